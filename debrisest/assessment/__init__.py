@@ -1,0 +1,1 @@
+"""Errors, relabeling of principal axes, and statistics over runs."""

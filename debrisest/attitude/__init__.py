@@ -1,0 +1,1 @@
+"""Attitude: quaternions, Euler angles, attitude from points."""

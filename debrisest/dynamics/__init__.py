@@ -1,0 +1,1 @@
+"""Rotation of rigid bodies, orbits and relative motion."""

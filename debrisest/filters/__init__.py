@@ -1,0 +1,1 @@
+"""Filters: algorithms that are handed a model and know nothing of satellites."""

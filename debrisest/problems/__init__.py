@@ -1,0 +1,1 @@
+"""Estimation problems, one file each: state, process, measurement."""

@@ -1,0 +1,1 @@
+"""Recovery of a whole attitude signal from partial samples."""

@@ -1,0 +1,1 @@
+"""The stages simulate, recover, filter and assess: arrays in, arrays out."""

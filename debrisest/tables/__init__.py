@@ -1,0 +1,1 @@
+"""Tables beside published values: cells, verdicts, rendering."""

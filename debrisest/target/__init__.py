@@ -1,0 +1,1 @@
+"""Geometry of the target: features and their visibility."""
