@@ -1,0 +1,28 @@
+"""Whether the signs given to the pieces of a quaternion signal were right."""
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.recovery.pieces import continuous
+
+
+def signs_right(raw: Array, piece: Array, sign: Array, true: Array) -> Array:
+    """Return the share (run,) of right decisions between successive pieces; 1 where there is none.
+
+    ``raw`` and ``true`` are quaternions (run, time, 4), ``piece`` (run, time) is NaN between
+    pieces, ``sign`` (run, piece) is NaN for pieces that a run lacks. The sign of the first piece
+    is free, so that a decision is right if the sign changes from one piece to the next just
+    where the samples' sign against a continuous truth does.
+    """
+    smooth = continuous(true, np.zeros(piece.shape, dtype=np.int64))
+    against_truth = np.sum(raw * smooth, axis=-1)
+    numbers = np.arange(sign.shape[-1])
+    agreement = np.stack(
+        [np.nansum(np.where(piece == n, against_truth, 0.0), axis=-1) for n in numbers], axis=-1
+    )
+    wanted = np.where(agreement < 0, -1.0, 1.0)
+    decided = np.isfinite(sign[..., 1:]) & np.isfinite(sign[..., :-1])
+    given, true_turn = sign[..., 1:] * sign[..., :-1], wanted[..., 1:] * wanted[..., :-1]
+    decisions = decided.sum(axis=-1)
+    right = (decided & (given == true_turn)).sum(axis=-1)
+    return np.where(decisions > 0, right / np.maximum(decisions, 1), 1.0)

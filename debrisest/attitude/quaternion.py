@@ -1,0 +1,103 @@
+"""Unit quaternions on arrays of shape ``(..., 4)``.
+
+Conventions: Hamilton product, scalar part first. ``q_ib`` takes body vectors to inertial ones,
+``v_i = R(q_ib) v_b``, so that rotations compose as ``q_ic = multiply(q_ib, q_bc)``; with the rate
+``w_b`` in body axes, ``q_dot = 1/2 q * (0, w_b)``. ``q`` and ``-q`` are the same rotation. Rotation
+vectors are in radians. Leading axes broadcast, and NaN in gives NaN out.
+"""
+
+import numpy as np
+
+from debrisest.arrays import Array
+
+
+def multiply(p: Array, q: Array) -> Array:
+    """Hamilton product ``p q``, ``(..., 4)``: the rotation ``q`` followed by ``p``."""
+    p0, p1, p2, p3 = np.moveaxis(p, -1, 0)
+    q0, q1, q2, q3 = np.moveaxis(q, -1, 0)
+    return np.stack(
+        [
+            p0 * q0 - p1 * q1 - p2 * q2 - p3 * q3,
+            p0 * q1 + p1 * q0 + p2 * q3 - p3 * q2,
+            p0 * q2 - p1 * q3 + p2 * q0 + p3 * q1,
+            p0 * q3 + p1 * q2 - p2 * q1 + p3 * q0,
+        ],
+        axis=-1,
+    )
+
+
+def conjugate(q: Array) -> Array:
+    """Conjugate, which for a unit quaternion is the inverse rotation."""
+    return np.asarray(q * np.array([1.0, -1.0, -1.0, -1.0]))
+
+
+def normalize(q: Array) -> Array:
+    """``q`` scaled to unit norm; a zero quaternion, which is no rotation, gives NaN."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(q / np.linalg.norm(q, axis=-1, keepdims=True))
+
+
+def rotate(q: Array, v: Array) -> Array:
+    """``R(q) v`` for vectors ``v (..., 3)``."""
+    vector = q[..., 1:]
+    twice_cross = 2.0 * np.cross(vector, v)
+    return np.asarray(v + q[..., :1] * twice_cross + np.cross(vector, twice_cross))
+
+
+def to_matrix(q: Array) -> Array:
+    """Rotation matrix ``R(q) (..., 3, 3)`` of a unit quaternion."""
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    elements = [
+        *(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        *(2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+        *(2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+    ]
+    return np.stack(elements, axis=-1).reshape(*np.shape(w), 3, 3)
+
+
+def from_matrix(matrix: Array) -> Array:
+    """Unit quaternion ``(..., 4)``, scalar part not negative, of rotation matrices ``(..., 3, 3)``.
+
+    The elements give all products ``4 q_i q_j``; the row of the largest component is used, so that
+    no trace is singular.
+    """
+    products = _products(matrix)
+    largest = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
+    row = np.take_along_axis(products, largest[..., None, None], axis=-2)[..., 0, :]
+    row = np.where(row[..., :1] < 0.0, -row, row)
+    return np.asarray(row / np.linalg.norm(row, axis=-1, keepdims=True))
+
+
+def _products(matrix: Array) -> Array:
+    """``4 q q^T`` of shape ``(..., 4, 4)`` from the elements of ``R(q)``."""
+    (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(matrix, (-2, -1), (0, 1))
+    elements = [
+        *(1.0 + a + e + i, h - f, c - g, d - b),
+        *(h - f, 1.0 + a - e - i, b + d, c + g),
+        *(c - g, b + d, 1.0 - a + e - i, f + h),
+        *(d - b, c + g, f + h, 1.0 - a - e + i),
+    ]
+    return np.stack(elements, axis=-1).reshape(*np.shape(a), 4, 4)
+
+
+def exp(rotation_vector: Array) -> Array:
+    """Unit quaternion of a rotation vector ``(..., 3)`` (axis times angle)."""
+    angle = np.linalg.norm(rotation_vector, axis=-1, keepdims=True)
+    scale = 0.5 * np.sinc(angle / (2.0 * np.pi))
+    return np.concatenate([np.cos(0.5 * angle), scale * rotation_vector], axis=-1)
+
+
+def log(q: Array) -> Array:
+    """Shortest rotation vector ``(..., 3)`` of ``q``, of length at most pi."""
+    scalar, vector = q[..., :1], q[..., 1:]
+    sine = np.linalg.norm(vector, axis=-1, keepdims=True)
+    angle = 2.0 * np.arctan2(sine, np.abs(scalar))
+    ratio = np.divide(angle, sine, out=np.full_like(angle, 2.0), where=sine != 0.0)
+    return np.asarray(np.where(scalar < 0.0, -ratio, ratio) * vector)
+
+
+def angle_between(p: Array, q: Array) -> Array:
+    """Angle in ``[0, pi]`` of the rotation that takes ``p`` to ``q``, accurate near 0 and pi."""
+    difference = multiply(conjugate(p), q)
+    sine = np.linalg.norm(difference[..., 1:], axis=-1)
+    return np.asarray(2.0 * np.arctan2(sine, np.abs(difference[..., 0])))

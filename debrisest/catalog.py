@@ -1,0 +1,35 @@
+"""The one place where a ``kind`` in a scenario becomes code.
+
+A new motion, sensor, problem or filter is a new file and a new line here.
+"""
+
+from typing import get_args
+
+from debrisest.parts.filters import Unscented
+from debrisest.parts.motions import GravityGradient, TorqueFree
+from debrisest.parts.observers import Drift, Hold
+from debrisest.parts.orbits import KeplerOrbit
+from debrisest.parts.part import Part
+from debrisest.parts.recoveries import BasisPursuit
+from debrisest.parts.sensors import FeaturePoints
+from debrisest.parts.starts import FirstSamples
+from debrisest.parts.targets import RigidPoints
+from debrisest.problems.tumbling_attitude import TumblingAttitude
+
+
+def kind_of(part: type[Part]) -> str:
+    """Return the name that a scenario gives a part."""
+    return str(get_args(part.model_fields["kind"].annotation)[0])
+
+
+CATALOG: dict[str, list[type[Part]]] = {
+    "target": [RigidPoints],
+    "orbit": [KeplerOrbit],
+    "motion": [TorqueFree, GravityGradient],
+    "observers": [Hold, Drift],
+    "sensors": [FeaturePoints],
+    "recovery": [BasisPursuit],
+    "problem": [TumblingAttitude],
+    "start": [FirstSamples],
+    "filter": [Unscented],
+}

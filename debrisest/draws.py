@@ -1,0 +1,46 @@
+"""Random draws that belong to a run, whatever is computed together with it, and in which order."""
+
+import zlib
+from collections.abc import Sequence
+from enum import IntEnum
+
+import numpy as np
+
+from debrisest.arrays import Array
+
+
+class Stream(IntEnum):
+    """Independent streams of one run."""
+
+    TRUTH = 0
+    MEASUREMENT_NOISE = 1
+    CLUTTER = 2
+    INITIAL_ERROR = 3
+
+
+class Draws:
+    """Draws for a batch of runs; the batch is the first axis of everything that is returned.
+
+    Each run has its own generator for each stream, seeded by the scenario's seed, the case's
+    name, the run's number and the stream, so that a run's draws never depend on its companions.
+    """
+
+    def __init__(self, seed: int, case: str, runs: Sequence[int]) -> None:
+        self.runs = list(runs)
+        self._entropy = (seed, zlib.crc32(case.encode()))
+        self._generators: dict[Stream, list[np.random.Generator]] = {}
+
+    def normal(self, stream: Stream, shape: tuple[int, ...]) -> Array:
+        """Return standard normal draws (run, *shape)."""
+        return np.stack([g.standard_normal(shape) for g in self._of(stream)])
+
+    def _of(self, stream: Stream) -> list[np.random.Generator]:
+        if stream not in self._generators:
+            seed, case = self._entropy
+            self._generators[stream] = [
+                np.random.default_rng(
+                    np.random.SeedSequence(seed, spawn_key=(case, run, int(stream)))
+                )
+                for run in self.runs
+            ]
+        return self._generators[stream]

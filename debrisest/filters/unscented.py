@@ -1,0 +1,209 @@
+"""Unscented Kalman filter, batched over runs."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.missing import drop_missing
+from debrisest.filters.model import History, HistoryWriter, Model, add, subtract
+
+_SMALLEST_RATIO = 1e-12
+_SMALLEST_VARIANCE = 1e-30
+
+
+class UnscentedParameters(NamedTuple):
+    """Spread of the sigma points in the standard scaled form; the paper's alpha is their product.
+
+    Points lie at sqrt(alpha^2 (n_e + kappa)) sigma; beta = 2 suits a Gaussian.
+    """
+
+    alpha: float = 1.0
+    beta: float = 2.0
+    kappa: float = 0.0
+
+
+_SPREAD = UnscentedParameters()
+
+
+class _Rule(NamedTuple):
+    retract: Callable[[Array, Array], Array]
+    scale: float
+    mean_weights: Array
+    covariance_weights: Array
+    noise_root: Array
+
+
+class _Prediction(NamedTuple):
+    mean: Array
+    points: Array
+    deviations: Array
+    added_noise: Array
+    repairs: IntArray
+
+
+def unscented(
+    model: Model,
+    state: Array,
+    covariance: Array,
+    measurements: Array,
+    spread: UnscentedParameters = _SPREAD,
+    keep: Sequence[int] = (),
+    redraw: bool = False,
+) -> History:
+    """Filter a batch of runs (Biondi et al. 2017, Eqs 32-42).
+
+    `state` (run, n) and `covariance` (run, n_e, n_e) are the prior of epoch 0, which measurement 0
+    updates; `measurements` (run, time, m), NaN = not observed; `keep` lists the epochs whose full
+    covariance is wanted. Differences from the printed equations:
+
+    * Eq 32: the factor of sqrt(P) is sqrt(alpha^2 (n_e + kappa)).
+    * Eqs 34-35: mean and covariance are those of the predicted points, the covariance about
+      the mean.
+    * Eq 36: the predicted points are measured as they are, as printed; `redraw` draws new
+      ones from the predicted covariance, which then includes the process noise.
+    * Eq 42: P- - K S K^T is evaluated as (dX - K dY) W (dX - K dY)^T + K R K^T + Q, equal but
+      symmetric, and positive when the weights are.
+
+    Points are drawn by addition unless the model has its own `difference`, in which case its
+    `retract` draws them; the corrected state is always `retract(x, K nu)`.
+    """
+    rule = _rule(model, covariance.shape[-1], spread)
+    epochs = measurements.shape[1]
+    writer = HistoryWriter(model, state, covariance, epochs, keep)
+    with np.errstate(all="ignore"):
+        for k in range(epochs):
+            state, covariance = writer.live(state, covariance)
+            predicted = _predict(model, rule, state, covariance, k, redraw)
+            state, covariance, nis, dof = _update(model, rule, predicted, measurements[:, k], k)
+            writer.record(k, state, covariance, nis, dof, predicted.repairs)
+    return writer.history()
+
+
+def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _Rule:
+    """How points are drawn and weighed.
+
+    A mean is taken of differences from the central point, so that point's weight plays no part.
+    """
+    scaled = spread.alpha**2 * (n_e + spread.kappa)
+    if not scaled > 0.0:
+        raise ValueError(
+            f"alpha^2 (n_e + kappa) must be positive, not {scaled}, for n_e = {n_e} errors"
+        )
+    outer = np.full(2 * n_e + 1, 0.5 / scaled)
+    central = 1.0 - n_e / scaled + 1.0 - spread.alpha**2 + spread.beta
+    values, vectors = np.linalg.eigh(model.measurement_noise)
+    return _Rule(
+        retract=add if model.difference is subtract else model.retract,
+        scale=float(np.sqrt(scaled)),
+        mean_weights=outer,
+        covariance_weights=np.concatenate([[central], outer[1:]]),
+        noise_root=np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T,
+    )
+
+
+def _predict(
+    model: Model, rule: _Rule, state: Array, covariance: Array, k: int, redraw: bool
+) -> _Prediction:
+    """Sigma points at epoch k before its measurement; at epoch 0 those of the prior itself."""
+    start = _draw(rule, state, covariance)
+    if k == 0:
+        return start
+    points = model.process(start.points, k - 1)
+    centre = points[:, 0]
+    mean = rule.retract(centre, rule.mean_weights @ model.difference(points, centre[:, None]))
+    deviations = model.difference(points, mean[:, None])
+    if not redraw:
+        return _Prediction(mean, points, deviations, model.process_noise, start.repairs)
+    again = _draw(rule, mean, _second_moment(rule, deviations) + model.process_noise)
+    return again._replace(repairs=start.repairs + again.repairs)
+
+
+def _draw(rule: _Rule, mean: Array, covariance: Array) -> _Prediction:
+    root, repaired = _square_root(covariance)
+    runs, n_e = covariance.shape[:2]
+    errors = np.zeros((runs, 2 * n_e + 1, n_e))
+    np.multiply(rule.scale, np.swapaxes(root, -2, -1), out=errors[:, 1 : n_e + 1])
+    np.negative(errors[:, 1 : n_e + 1], out=errors[:, n_e + 1 :])
+    points = rule.retract(mean[:, None], errors)
+    return _Prediction(mean, points, errors, np.zeros((n_e, n_e)), repaired.astype(np.int64))
+
+
+def _update(
+    model: Model, rule: _Rule, predicted: _Prediction, y: Array, k: int
+) -> tuple[Array, Array, Array, IntArray]:
+    """Posterior state and covariance, NIS, and the number of measured components."""
+    shown = model.measurement(predicted.points, k)
+    expected = shown[:, 0] + rule.mean_weights @ (shown - shown[:, :1])
+    response = shown - expected[:, None]
+    innovation = model.innovation(y, expected)
+    noise = model.measurement_noise
+    measured = ~np.isnan(y)
+    if not measured.all():
+        innovation, response, noise = drop_missing(measured, innovation, response, noise)
+    weighted = np.swapaxes(rule.covariance_weights[:, None] * response, -2, -1)
+    cross = weighted @ predicted.deviations
+    solved = _solve(
+        weighted @ response + noise, np.concatenate([cross, innovation[..., None]], axis=-1)
+    )
+    gain = solved[..., :-1]
+    correction = (innovation[:, None] @ gain)[:, 0]
+    residual = predicted.deviations - response @ gain
+    covariance = (
+        _second_moment(rule, residual) + _gram(rule.noise_root @ gain) + predicted.added_noise
+    )
+    nis = (innovation * solved[..., -1]).sum(-1)
+    return model.retract(predicted.mean, correction), covariance, nis, measured.sum(-1)
+
+
+def _second_moment(rule: _Rule, deviations: Array) -> Array:
+    """D^T W D of deviations D (run, point, n_e), symmetric to the last bit."""
+    central, outer = rule.covariance_weights[0], rule.covariance_weights[1]
+    moment: Array = outer * _gram(deviations) + (central - outer) * _gram(deviations[:, :1])
+    return moment
+
+
+def _gram(a: Array) -> Array:
+    return np.swapaxes(a, -2, -1) @ a
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    """Solution per run; NaN where the matrix is singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        sign, _ = np.linalg.slogdet(matrix)
+        singular = ~(np.abs(sign) > 0.0)[:, None, None]
+        solved = np.linalg.solve(np.where(singular, np.eye(matrix.shape[-1]), matrix), right)
+        return np.where(singular, np.nan, solved)
+
+
+def _square_root(covariance: Array) -> tuple[Array, BoolArray]:
+    """Lower triangular factor per run, and which runs had to be repaired to have one."""
+    try:
+        root = np.asarray(np.linalg.cholesky(covariance), dtype=np.float64)
+        return root, np.zeros(len(covariance), dtype=np.bool_)
+    except np.linalg.LinAlgError:
+        sound = np.array([_has_factor(matrix) for matrix in covariance])
+    repaired: BoolArray = ~sound & np.isfinite(covariance).all((-2, -1))
+    root = np.full_like(covariance, np.nan)
+    root[sound] = np.linalg.cholesky(covariance[sound])
+    root[repaired] = _nearest_factor(covariance[repaired])
+    return root, repaired
+
+
+def _has_factor(matrix: Array) -> bool:
+    try:
+        np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        return False
+    return True
+
+
+def _nearest_factor(covariance: Array) -> Array:
+    """Factor after clipping the eigenvalues at 1e-12 of the largest."""
+    values, vectors = np.linalg.eigh(0.5 * covariance + 0.5 * np.swapaxes(covariance, -2, -1))
+    floor = np.maximum(_SMALLEST_RATIO * values[:, -1:], _SMALLEST_VARIANCE)
+    rows = np.sqrt(np.maximum(values, floor))[..., None] * np.swapaxes(vectors, -2, -1)
+    return np.asarray(np.swapaxes(np.linalg.qr(rows, mode="r"), -2, -1), dtype=np.float64)

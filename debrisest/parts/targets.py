@@ -1,0 +1,100 @@
+"""Targets: the features on a body and its inertia."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import AfterValidator, Field
+
+from debrisest.arrays import Array, Data
+from debrisest.attitude.points import features_frame
+from debrisest.clock import Clock
+from debrisest.draws import Draws
+from debrisest.parts.part import Keys, SimulationPart, Vector3
+
+
+def _possible_inertia(rows: list[float] | list[list[float]]) -> list[float] | list[list[float]]:
+    tensor = inertia_tensor(rows)
+    if not np.allclose(tensor, tensor.T, rtol=1e-9):
+        raise ValueError("the inertia tensor must be symmetric")
+    moments = np.linalg.eigvalsh(tensor)
+    if moments[0] <= 0:
+        raise ValueError(f"the principal moments must be positive, they are {_text(moments)}")
+    if moments[2] > (moments[0] + moments[1]) * (1 + 1e-9):
+        raise ValueError(
+            "no body has this inertia: the largest principal moment must not exceed the sum of "
+            f"the two others (triangle inequality), they are {_text(moments)}"
+        )
+    return rows
+
+
+def _text(moments: Array) -> str:
+    return ", ".join(f"{moment:.6g}" for moment in moments)
+
+
+def inertia_tensor(rows: list[float] | list[list[float]]) -> Array:
+    """Return the tensor (3, 3) of three principal moments, or of three rows."""
+    given = np.asarray(rows, dtype=float)
+    return np.diag(given) if given.ndim == 1 else given
+
+
+Inertia = Annotated[
+    Vector3 | Annotated[list[Vector3], Field(min_length=3, max_length=3)],
+    AfterValidator(_possible_inertia),
+]
+
+
+def _direction(normal: list[float]) -> list[float]:
+    if not np.linalg.norm(normal) > 0:
+        raise ValueError("an outward normal must not be zero")
+    return normal
+
+
+class Feature(Keys):
+    """A recognisable point of the target and the outward normal of the surface there."""
+
+    position_m: Vector3
+    normal: Annotated[Vector3, AfterValidator(_direction)]
+
+
+def _at_least_three(points: dict[str, Feature]) -> dict[str, Feature]:
+    if len(points) < 3:
+        raise ValueError(f"an attitude needs at least three features, found {len(points)}")
+    first = np.array([feature.position_m for feature in list(points.values())[:3]])
+    sides = first[1:] - first[0]
+    if np.linalg.matrix_rank(sides, tol=1e-6 * float(np.abs(sides).max() or 1)) < 2:
+        raise ValueError("the first three features must not lie on one line")
+    return points
+
+
+class RigidPoints(SimulationPart):
+    """Named features on a rigid body; the origin is the centre of mass, the axes are ``b``."""
+
+    gives = ("true_point_b", "true_normal_b", "true_inertia_b", "known_point_f")
+    kind: Literal["rigid_points"]
+    inertia_kg_m2: Inertia = Field(
+        description="three principal moments, or the rows of the tensor; scale is free"
+    )
+    points: Annotated[dict[str, Feature], AfterValidator(_at_least_three)]
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return the body's geometry and inertia, the same in every run."""
+        runs, positions = len(draws.runs), self._positions()
+        frame = features_frame(positions)
+        return {
+            "feature": np.array(list(self.points)),
+            "known_point_f": _each_run((positions - positions[0]) @ frame, runs),
+            "true_point_b": _each_run(positions, runs),
+            "true_normal_b": _each_run(self._normals(), runs),
+            "true_inertia_b": _each_run(inertia_tensor(self.inertia_kg_m2), runs),
+        }
+
+    def _positions(self) -> Array:
+        return np.array([feature.position_m for feature in self.points.values()])
+
+    def _normals(self) -> Array:
+        normals = np.array([feature.normal for feature in self.points.values()])
+        return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+
+
+def _each_run(value: Array, runs: int) -> Array:
+    return np.broadcast_to(value, (runs, *value.shape))

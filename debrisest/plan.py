@@ -1,0 +1,185 @@
+"""What has to run, and why: derived from the scenario and from the files alone."""
+
+import hashlib
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from debrisest import store
+from debrisest.errors import UserError
+from debrisest.scenario.load import Case, LoadedScenario
+from debrisest.stages.pipeline import STAGES, stages_of
+
+RUNS_PER_FILE = 20
+
+
+@dataclass(frozen=True)
+class Step:
+    """One stage of one chunk of runs: reads its upstream files, writes its own."""
+
+    case: Case
+    estimator: str
+    stage: str
+    first_run: int
+    runs: int
+    path: Path
+    upstream: tuple["Step", ...]
+    inputs: dict[str, Any]
+    key: str
+    reason: str
+    """Why it has to run; empty where its file is up to date."""
+    notice: str = ""
+    """What the user should know about the file that is replaced."""
+
+    @property
+    def name(self) -> str:
+        """Return what this step is called in messages."""
+        estimator = f" {self.estimator}" if self.estimator else ""
+        last = self.first_run + self.runs - 1
+        return (
+            f"{self.case.scenario_name} {self.case.name}: {self.stage}{estimator}, "
+            f"runs {self.first_run}-{last}"
+        )
+
+
+@dataclass(frozen=True)
+class Selection:
+    """Which part of a scenario is asked for; None is all."""
+
+    runs: int | None = None
+    cases: Sequence[str] | None = None
+    estimators: Sequence[str] | None = None
+    last_stage: str = "assess"
+    force: bool = False
+
+
+def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step]:
+    """Return every step that the selection needs, upstream first, with the reasons to run."""
+    cases = _chosen("case", selection.cases, list(scenario.cases))
+    estimators = _chosen("estimator", selection.estimators, list(scenario.any.estimators))
+    steps: list[Step] = []
+    for name in cases:
+        case = scenario.cases[name]
+        folder = out / scenario.name / name
+        wanted = selection.runs or case.scenario.runs
+        for first in range(0, wanted, RUNS_PER_FILE):
+            chunk = _Chunk(case, folder, first, min(RUNS_PER_FILE, wanted - first), selection)
+            steps += chunk.steps(estimators)
+    return steps
+
+
+def _chosen(what: str, asked: Sequence[str] | None, known: list[str]) -> list[str]:
+    from debrisest.scenario.problems import did_you_mean
+
+    for name in asked or []:
+        if name not in known:
+            raise UserError(f"--{what} {name}: unknown {what}; {did_you_mean(name, known)}")
+    return [name for name in known if asked is None or name in asked]
+
+
+@dataclass(frozen=True)
+class _Chunk:
+    """Some runs of a case, and where their files lie."""
+
+    case: Case
+    folder: Path
+    first: int
+    runs: int
+    selection: Selection
+
+    def steps(self, estimators: Sequence[str]) -> list[Step]:
+        simulate = self._step("simulate", "", ())
+        return [simulate, *self._estimator_steps(simulate, estimators)]
+
+    def _estimator_steps(self, simulate: Step, estimators: Sequence[str]) -> Iterator[Step]:
+        for estimator in estimators:
+            done: tuple[Step, ...] = (simulate,)
+            names = stages_of(self.case, estimator)
+            for stage in names:
+                if not _within(stage, self.selection.last_stage):
+                    break
+                done = (*done, self._step(stage, estimator, done))
+            yield from done[1:]
+
+    def _step(self, stage: str, estimator: str, upstream: tuple[Step, ...]) -> Step:
+        inputs = STAGES[stage].inputs(self.case, estimator)
+        key = _key(inputs, [step.key for step in upstream])
+        name = f"{stage}-{estimator}" if estimator else stage
+        path = self.folder / f"{name}.{self.first:06d}.h5"
+        reason, notice = self._why(path, key, inputs, upstream)
+        return Step(
+            self.case,
+            estimator,
+            stage,
+            self.first,
+            self.runs,
+            path,
+            upstream,
+            inputs,
+            key,
+            reason,
+            notice,
+        )
+
+    def _why(
+        self, path: Path, key: str, inputs: dict[str, Any], upstream: tuple[Step, ...]
+    ) -> tuple[str, str]:
+        """Return why the step has to run, and a notice where a file is given up for it."""
+        found = store.inspect(path)
+        if found.condition is store.Condition.FOREIGN:
+            raise UserError(
+                f"{path} is {found.condition.value}; "
+                "move it away or choose another folder with --out"
+            )
+        if found.condition is store.Condition.MISSING:
+            return "not there yet", ""
+        if found.condition is not store.Condition.WHOLE:
+            return f"its file is {found.condition.value}", (
+                f"{path} is {found.condition.value}: it is computed again"
+            )
+        if self.selection.force:
+            return "asked for by --force", ""
+        before = [step for step in upstream if step.reason]
+        if before:
+            return f"{before[0].stage} runs before it", ""
+        if found.attributes.get("stage_key") != key:
+            return _difference(json.loads(found.attributes["inputs"]), inputs), ""
+        if found.attributes["runs"] < self.runs:
+            return f"holds {found.attributes['runs']} runs, {self.runs} are wanted", ""
+        return "", ""
+
+
+def _within(stage: str, last: str) -> bool:
+    order = list(STAGES)
+    return order.index(stage) <= order.index(last)
+
+
+def _key(inputs: dict[str, Any], upstream: list[str]) -> str:
+    text = json.dumps([inputs, upstream], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _difference(before: dict[str, Any], now: dict[str, Any]) -> str:
+    """Return the first keys whose values differ, with both values."""
+    was, now_is = _flat(before), _flat(now)
+    changed = [key for key in was | now_is if was.get(key) != now_is.get(key)]
+    if not changed:
+        return "an earlier stage was computed anew"
+    told = [f"{key} was {was.get(key)}, is {now_is.get(key)}" for key in changed[:3]]
+    return "; ".join(told) + ("; ..." if len(changed) > 3 else "")
+
+
+def _flat(value: Any, prefix: str = "") -> dict[str, Any]:
+    if isinstance(value, dict):
+        items = value.items()
+    elif isinstance(value, list):
+        items = {str(index): item for index, item in enumerate(value)}.items()
+    else:
+        return {prefix: value}
+    return {
+        path: leaf
+        for key, item in items
+        for path, leaf in _flat(item, f"{prefix}.{key}" if prefix else str(key)).items()
+    }

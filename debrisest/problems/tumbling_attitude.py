@@ -1,0 +1,182 @@
+"""Rate and inertia of a torque-free body from the attitude of a frame fixed in it.
+
+The state (14) is ``q_ib`` (principal axes to inertial), ``q_bf`` (feature frame to principal
+axes, constant), the rate in principal axes and the principal moments, scaled to unit norm. What is
+measured is ``q_if = q_ib q_bf``, up to its sign. The source is Biondi et al. (2017), Eqs 29-31.
+
+We depart from the printed Eq 29 in the sign of Euler's term (``-J^-1 (w x J w)``; with the printed
+sign the filter finds the same rates and a wrong inertia) and in the size of its zero block for
+``q_bf`` (4, not 3). The body's axes ``b`` of a filter are principal axes known only up to a
+relabeling, see `debrisest.assessment.principal_axes`.
+"""
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+
+from debrisest.arrays import Array, Data
+from debrisest.assessment.attitude import attitude_errors, true_feature_attitude
+from debrisest.assessment.convergence import convergence_time
+from debrisest.assessment.principal_axes import best_relabeling
+from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.dynamics.inertia import principal_axes
+from debrisest.filters.model import History, Model
+from debrisest.parts.part import Keys, Positive, ProblemPart, Window
+
+Q_IB, Q_BF, RATE, MOMENTS = slice(0, 4), slice(4, 8), slice(8, 11), slice(11, 14)
+ERROR_NAMES = tuple(
+    f"{name}_{index}"
+    for name, indices in (("q_ib", "0123"), ("q_bf", "0123"), ("rate", "123"), ("moment", "123"))
+    for index in indices
+)
+LEAST_MOMENT = 0.02
+"""Sigma points of the moments, which have unit norm, are kept this far from zero."""
+
+CONVERGED = np.radians(0.5)
+"""The rate has converged once its error stays below this, rad/s."""
+
+
+def derivative(state: Array) -> Array:
+    """Return the time derivative of states (..., 14), per second (Eq 29, corrected)."""
+    q0, q1, q2, q3 = np.moveaxis(state[..., Q_IB], -1, 0)
+    w1, w2, w3 = np.moveaxis(state[..., RATE], -1, 0)
+    given = np.moveaxis(state[..., MOMENTS], -1, 0)
+    j1, j2, j3 = np.copysign(np.maximum(np.abs(given), LEAST_MOMENT), given)
+    rates = np.zeros_like(state)
+    rates[..., 0] = -0.5 * (q1 * w1 + q2 * w2 + q3 * w3)
+    rates[..., 1] = 0.5 * (q0 * w1 + q2 * w3 - q3 * w2)
+    rates[..., 2] = 0.5 * (q0 * w2 + q3 * w1 - q1 * w3)
+    rates[..., 3] = 0.5 * (q0 * w3 + q1 * w2 - q2 * w1)
+    rates[..., 8] = (j2 - j3) / j1 * w2 * w3
+    rates[..., 9] = (j3 - j1) / j2 * w3 * w1
+    rates[..., 10] = (j1 - j2) / j3 * w1 * w2
+    return rates
+
+
+def euler_step(state: Array, step: float) -> Array:
+    """Return the states after one explicit Euler step of ``step`` seconds, as printed."""
+    return state + step * derivative(state)
+
+
+def rk4_step(state: Array, step: float) -> Array:
+    """Return the states after one classical Runge-Kutta step of ``step`` seconds."""
+    k1 = derivative(state)
+    k2 = derivative(state + 0.5 * step * k1)
+    k3 = derivative(state + 0.5 * step * k2)
+    k4 = derivative(state + step * k3)
+    return state + step / 6 * (k1 + 2 * (k2 + k3) + k4)
+
+
+def measured_attitude(state: Array) -> Array:
+    """Return ``q_if`` (..., 4) of states (..., 14), as in Eq 30."""
+    return quaternion.multiply(state[..., Q_IB], state[..., Q_BF])
+
+
+def correct(state: Array, error: Array) -> Array:
+    """Add an error (..., 14), then scale both quaternions and the moments to unit norm."""
+    corrected = state + error
+    for block in (Q_IB, Q_BF, MOMENTS):
+        corrected[..., block] /= np.linalg.norm(corrected[..., block], axis=-1, keepdims=True)
+    return corrected
+
+
+def sign_free_innovation(measured: Array, predicted: Array) -> Array:
+    """Return ``+-measured - predicted``, whichever sign lies nearer: both are one attitude."""
+    product = np.sum(measured * predicted, axis=-1, keepdims=True)
+    return np.where(product < 0, -measured, measured) - predicted
+
+
+_STEPS: dict[str, Callable[[Array, float], Array]] = {"euler": euler_step, "rk4": rk4_step}
+
+
+class Variances(Keys):
+    """A variance for each block of the state."""
+
+    q_ib: Positive
+    q_bf: Positive
+    rate_rad2_s2: Positive
+    moments: Positive
+
+    def diagonal(self) -> Array:
+        """Return the covariance (14, 14)."""
+        blocks = (self.q_ib, self.q_bf, self.rate_rad2_s2, self.moments)
+        return np.diag(np.repeat(blocks, (4, 4, 3, 3)))
+
+
+class TumblingAttitude(ProblemPart):
+    """The problem of this file, with its integrator and its noises (variances)."""
+
+    needs = ("q_if",)
+    kind: Literal["tumbling_attitude"]
+    integrator: Literal["euler", "rk4"]
+    process_noise: Variances
+    measurement_noise: Positive
+
+    def measurements(self, data: Data) -> Array:
+        """Return the recovered attitude (run, time, 4)."""
+        return data["q_if"]
+
+    def model(self, clock: Clock) -> Model:
+        """Return process and measurement of one clock step."""
+        step = _STEPS[self.integrator]
+        return Model(
+            process=lambda state, _: step(state, clock.step),
+            measurement=lambda state, _: measured_attitude(state),
+            process_noise=self.process_noise.diagonal(),
+            measurement_noise=self.measurement_noise * np.eye(4),
+            error_names=ERROR_NAMES,
+            retract=correct,
+            innovation=sign_free_innovation,
+        )
+
+    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+        """Return the initial state (run, 14) and covariance (run, 14, 14)."""
+        state = np.concatenate(
+            [guess["q_ib"], guess["q_bf"], guess["rate_b"], guess["moments_b"]], axis=-1
+        )
+        covariance = Variances(**variance).diagonal()
+        return state, np.broadcast_to(covariance, (len(state), *covariance.shape)).copy()
+
+    def unpack(self, history: History) -> Data:
+        """Return the estimated quantities by name, each with its sigma."""
+        blocks = {"q_ib": Q_IB, "q_bf": Q_BF, "rate_b": RATE, "moments_b": MOMENTS}
+        return {name: history.state[..., block] for name, block in blocks.items()} | {
+            f"{name}_sigma": history.sigma[..., block] for name, block in blocks.items()
+        }
+
+    def assess(self, data: Data, scored: Window) -> Data:
+        """Return errors of attitude, rate and inertia in true principal axes, if known."""
+        result: Data = {"nis_mean": data["nis"] / np.maximum(data["nis_dof"], 1)}
+        if "true_q_ib" not in data:
+            return result
+        moments, axes = principal_axes(data["true_inertia_b"])
+        rate = data["true_rate_b"] @ axes
+        inside = (data["time_s"] >= scored[0]) & (data["time_s"] < scored[1])
+        relabeling = best_relabeling(data["rate_b"][:, inside], rate[:, inside])
+        return (
+            result
+            | {"relabeling": relabeling}
+            | _attitude_errors(data)
+            | _rate_errors(data["rate_b"] @ np.swapaxes(relabeling, -1, -2) - rate, data["time_s"])
+            | _inertia_errors(data["moments_b"] @ np.abs(np.swapaxes(relabeling, -1, -2)), moments)
+        )
+
+
+def _attitude_errors(data: Data) -> Data:
+    estimated = quaternion.multiply(data["q_ib"], data["q_bf"])
+    pitch_error, angle = attitude_errors(estimated, true_feature_attitude(data))
+    return {"pitch": pitch_error, "attitude": angle}
+
+
+def _rate_errors(error: Array, times: Array) -> Data:
+    components = {f"rate_{axis + 1}": error[..., axis] for axis in range(3)}
+    norm = np.linalg.norm(error, axis=-1)
+    return components | {"rate": norm, "convergence_time": convergence_time(CONVERGED, norm, times)}
+
+
+def _inertia_errors(estimated: Array, moments: Array) -> Data:
+    true = moments / np.linalg.norm(moments, axis=-1, keepdims=True)
+    error = estimated - true[:, None]
+    return {f"inertia_{axis + 1}": error[..., axis] for axis in range(3)}

@@ -1,0 +1,68 @@
+"""Progress on standard error: a bar with the time left on a terminal, plain lines elsewhere."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Protocol
+
+
+class Progress(Protocol):
+    """What is told while steps are run."""
+
+    def done(self, name: str) -> None:
+        """Tell that a step is finished."""
+
+    def say(self, text: str) -> None:
+        """Tell something that should stay on the screen."""
+
+
+@contextmanager
+def progress(steps: int, quiet: bool = False) -> Iterator[Progress]:
+    """Yield the teller that suits standard error."""
+    if quiet:
+        yield _Silent()
+    elif sys.stderr.isatty():
+        with _bar(steps) as bar:
+            yield bar
+    else:
+        yield _Lines(steps)
+
+
+class _Silent:
+    def done(self, name: str) -> None:
+        pass
+
+    def say(self, text: str) -> None:
+        print(text, file=sys.stderr, flush=True)
+
+
+class _Lines:
+    def __init__(self, steps: int) -> None:
+        self._steps, self._finished = steps, 0
+
+    def done(self, name: str) -> None:
+        self._finished += 1
+        self.say(f"[{self._finished}/{self._steps}] {name}")
+
+    def say(self, text: str) -> None:
+        print(text, file=sys.stderr, flush=True)
+
+
+@contextmanager
+def _bar(steps: int) -> Iterator[Progress]:
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bars
+
+    columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), TextColumn("{task.fields[last]}")
+    with Bars(*columns, console=Console(stderr=True)) as bars:
+        task = bars.add_task("steps", total=steps, last="")
+
+        class Bar:
+            def done(self, name: str) -> None:
+                bars.update(task, advance=1, last=name)
+
+            def say(self, text: str) -> None:
+                bars.console.print(text, highlight=False)
+
+        yield Bar()

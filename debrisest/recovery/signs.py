@@ -1,0 +1,169 @@
+"""Search for the signs of a signal's pieces (Biondi et al. 2017, Sec. 4).
+
+q and -q are the same attitude, and nothing but the smoothness of the whole signal tells which of
+the two continues it across a gap. All signs of the first pieces are tried, the best hypotheses
+are kept, then the pieces are added one at a time, each with both signs.
+"""
+
+from collections.abc import Callable
+from itertools import product
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+from scipy.fft import next_fast_len
+
+from debrisest.arrays import Array, ComplexArray, IntArray
+from debrisest.recovery.basis_pursuit import BasisPursuit, basis_pursuit
+from debrisest.recovery.fourier import analyse, l1_norm, multiplicity, synthesise
+
+Score = Callable[[BasisPursuit], Array]
+"""Penalty (...) of recovered signals; the hypothesis with the lowest one is believed."""
+
+_DOUBLINGS = 3
+
+
+def lasso_score(solution: BasisPursuit) -> Array:
+    """Penalty (...): the objective of the lasso (Eq. 19), which the recovery minimises."""
+    return solution.objective
+
+
+def sparsity_score(
+    solution: BasisPursuit,
+    count_weight: float = 1.0,
+    modulus_weight: float = 10.0,
+    threshold: float = 1e-2,
+) -> Array:
+    """Penalty (...) of Eq. 28, const1 |c|_0 + const2 |c|_1 of the recovered signal's spectrum.
+
+    The paper gives neither the weights nor the modulus from which a coefficient is not zero.
+    """
+    large = (np.abs(solution.coefficients) > threshold) @ multiplicity(solution.length)
+    modulus = l1_norm(solution.coefficients, solution.length)
+    return count_weight * large + modulus_weight * modulus
+
+
+class _Search(NamedTuple):
+    """What stays the same during the search: runs (run, time) with the same `piece` (time)."""
+
+    samples: Array
+    piece: IntArray
+    score: Score
+    ratio: float
+    penalty: float
+    splitting: float
+    relaxation: float
+    beam: int
+
+
+class _Beam(NamedTuple):
+    """The hypotheses in force, the best one first."""
+
+    sign: Array
+    """Signs (run, hypothesis, piece) of the pieces so far."""
+    coefficients: ComplexArray
+    """Their recovery, half spectra (run, hypothesis, length // 2 + 1)."""
+    length: int
+
+
+def search_signs(
+    samples: Array,
+    piece: IntArray,
+    score: Score = lasso_score,
+    *,
+    ratio: float = 2.0,
+    penalty: float = 0.3,
+    splitting: float = 0.1,
+    relaxation: float = 1.6,
+    first: int = 5,
+    beam: int = 2,
+    first_iterations: int = 60,
+    iterations: int = 8,
+) -> Array:
+    """Sign (..., piece) of every piece of `samples` (..., time), +1 for the first.
+
+    `samples` is one component of the quaternions, continuous inside each `piece` (..., time). The
+    first `first` pieces are tried with all signs, the best `beam` hypotheses are kept; the window
+    ends with the newest piece. Later hypotheses start from their parent's recovery, hence fewer
+    `iterations`. A signal with fewer pieces than the others has NaN for those it lacks.
+
+    `ratio` is that of atoms to samples (1 as printed, and then the search fails; see
+    `dictionary_length`); during the search it is between `ratio` and twice that, so that the
+    length seldom changes. The remaining parameters are those of `basis_pursuit`.
+    """
+    batch = np.broadcast_shapes(samples.shape, piece.shape)
+    rows = np.broadcast_to(samples, batch).reshape(-1, batch[-1])
+    masks, group = np.unique(
+        np.broadcast_to(piece, batch).reshape(rows.shape), axis=0, return_inverse=True
+    )
+    sign = np.full((len(rows), max(masks.max(initial=-1) + 1, 0)), np.nan)
+    for index, mask in enumerate(masks):
+        same = np.flatnonzero(group.reshape(-1) == index)
+        search = _Search(rows[same], mask, score, ratio, penalty, splitting, relaxation, beam)
+        found = _search(search, first, first_iterations, iterations)
+        sign[same, : found.shape[-1]] = found
+    return sign.reshape(*batch[:-1], -1)
+
+
+def _search(search: _Search, first: int, first_iterations: int, iterations: int) -> Array:
+    """Signs (run, piece) of the best hypothesis at the end."""
+    count = int(search.piece.max(initial=-1)) + 1
+    if count == 0:
+        return np.empty((len(search.samples), 0))
+    beam = _exhaust(search, min(first, count), first_iterations)
+    for _ in range(min(first, count), count):
+        beam = _extend(search, beam, iterations)
+    return beam.sign[:, 0]
+
+
+def _exhaust(search: _Search, count: int, iterations: int) -> _Beam:
+    """The best hypotheses on the first `count` pieces, out of all: 2^(count - 1)."""
+    signs = np.array([(1.0, *rest) for rest in product((1.0, -1.0), repeat=count - 1)])
+    return _best(search, np.tile(signs, (len(search.samples), 1, 1)), iterations, None)
+
+
+def _extend(search: _Search, beam: _Beam, iterations: int) -> _Beam:
+    """The best hypotheses after one more piece, added to each with both signs."""
+    plus = np.ones_like(beam.sign[..., :1])
+    children = [np.concatenate([beam.sign, newest], axis=-1) for newest in (plus, -plus)]
+    parents = beam._replace(coefficients=np.concatenate([beam.coefficients] * 2, axis=1))
+    return _best(search, np.concatenate(children, axis=1), iterations, parents)
+
+
+def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) -> _Beam:
+    """The hypotheses `sign` (run, hypothesis, piece) with the lowest scores."""
+    window = int(np.flatnonzero(search.piece == sign.shape[-1] - 1)[-1]) + 1
+    piece = search.piece[:window]
+    length = _length(search, window)
+    recovered = basis_pursuit(
+        search.samples[:, None, :window] * sign[..., piece],
+        piece >= 0,
+        length,
+        search.penalty,
+        search.splitting,
+        iterations,
+        relaxation=search.relaxation,
+        tolerance=0.0,
+        start=None if parents is None else _start(parents, length, window),
+    )
+    order = np.argsort(search.score(recovered), axis=-1, kind="stable")[:, : search.beam, None]
+    kept = np.take_along_axis(recovered.coefficients, order, axis=1)
+    return _Beam(np.take_along_axis(sign, order, axis=1), kept, length)
+
+
+def _length(search: _Search, window: int) -> int:
+    """Number of atoms for a window: the window itself, or a coarse grid of doubled lengths."""
+    if search.ratio == 1:
+        return window
+    length = next_fast_len(ceil(search.ratio * len(search.piece) / 2**_DOUBLINGS), real=True)
+    while length < search.ratio * window:
+        length *= 2
+    return length
+
+
+def _start(parents: _Beam, length: int, window: int) -> ComplexArray:
+    """The parents' coefficients, for dictionaries and windows that have grown."""
+    if length == parents.length:
+        return parents.coefficients
+    known = synthesise(parents.coefficients, parents.length, min(parents.length, window))
+    return analyse(known, length) / length

@@ -1,0 +1,189 @@
+"""Read scenario files: cases, grids and overrides, every problem told at once."""
+
+import itertools
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, reduce
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+from pydantic import ValidationError
+
+from debrisest.errors import UserError
+from debrisest.scenario.document import (
+    Document,
+    KeyPath,
+    Place,
+    Problem,
+    merge,
+    parse,
+    sub_document,
+)
+from debrisest.scenario.problems import did_you_mean, problems_of
+from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
+
+NOMINAL = "nominal"
+"""The case of a scenario that has neither cases nor a grid."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One experiment: a scenario with the case's changes and the overrides laid on it.
+
+    Only plain data travels to other processes; the scenario is validated again where it is used.
+    """
+
+    scenario_name: str
+    name: str
+    document: dict[str, Any]
+
+    @cached_property
+    def scenario(self) -> Scenario:
+        """Return the validated scenario of this case."""
+        scenario: Scenario = scenario_model().model_validate(self.document)
+        return scenario
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {key: value for key, value in self.__dict__.items() if key != "scenario"}
+
+    def as_yaml(self) -> str:
+        """Return the resolved scenario as YAML."""
+        return yaml.safe_dump(self.scenario.model_dump(mode="json"), sort_keys=False)
+
+
+class LoadedScenario(NamedTuple):
+    """A scenario file and all its cases, in the order of the file."""
+
+    path: Path
+    cases: dict[str, Case]
+
+    @property
+    def name(self) -> str:
+        """Return the scenario's name, the stem of its file."""
+        return self.path.stem
+
+    @property
+    def any(self) -> Scenario:
+        """Return one case's scenario, for what does not differ between cases."""
+        return next(iter(self.cases.values())).scenario
+
+
+def load_scenario(path: Path, overrides: Sequence[str] = ()) -> LoadedScenario:
+    """Return the cases of a scenario file, or raise UserError with every problem of it."""
+    document, problems = parse(_read(path), str(path))
+    if problems and not document.value:
+        raise UserError(map(str, problems))
+    laid_on = [_override(text) for text in overrides]
+    own = {key: document.value[key] for key in ("cases", "grid") if key in document.value}
+    listed, found = _validated(Document(own, document.places), CasesAndGrid)
+    problems += found
+    cases: dict[str, Case] = {}
+    for name, case_document in _case_documents(document, listed or CasesAndGrid()).items():
+        complete = reduce(merge, laid_on, case_document)
+        scenario, found = _validated(complete, scenario_model())
+        problems += found
+        if scenario is not None:
+            cases[name] = Case(path.stem, name, complete.value)
+    if not problems:
+        problems = _unknown_cases(document, cases)
+    if problems:
+        raise UserError(dict.fromkeys(map(str, problems)))
+    return LoadedScenario(path, cases)
+
+
+def _read(path: Path) -> str:
+    try:
+        raw = path.read_bytes()
+    except IsADirectoryError:
+        raise UserError(f"{path}: this is a folder; give a scenario file (YAML)") from None
+    except OSError as error:
+        reason = error.strerror or "cannot be read"
+        raise UserError(f"{path}: {reason}; give the path of a scenario file (YAML)") from None
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise UserError(
+            f"{path}: not a text file (byte {error.start} is not UTF-8); "
+            "give a scenario file (YAML)"
+        ) from None
+
+
+def _override(text: str) -> Document:
+    key, equals, value = text.partition("=")
+    if not equals or not all(key.split(".")):
+        raise UserError(f"--set {text}: expected key.path=value, such as runs=5")
+    place = Place(f"--set {text}")
+    parsed, problems = parse(f"value: {value}", place.source)
+    if problems:
+        raise UserError(f"{place}: the value is not valid YAML")
+    if key.split(".")[0] in ("cases", "grid"):
+        raise UserError(f"{place}: cases and grid cannot be set, since --set goes on every case")
+    return _nested(tuple(key.split(".")), parsed.value["value"], place)
+
+
+def _validated(document: Document, model: Any) -> tuple[Any, list[Problem]]:
+    try:
+        return model.model_validate(document.value), []
+    except ValidationError as error:
+        return None, problems_of(error, document, model)
+
+
+def _case_documents(document: Document, listed: CasesAndGrid) -> dict[str, Document]:
+    """Return the complete document of every case, grid and cases multiplied out."""
+    base = Document(
+        {key: value for key, value in document.value.items() if key not in ("cases", "grid")},
+        document.places,
+    )
+    cases = {name: merge(base, sub_document(document, ("cases", name))) for name in listed.cases}
+    if not listed.grid:
+        return cases or {NOMINAL: base}
+    points = [_grid_point(document, point) for point in _combinations(listed.grid)]
+    if not cases:
+        return {name: merge(base, over) for name, over in points}
+    return {
+        f"{case},{name}": merge(whole, over)
+        for case, whole in cases.items()
+        for name, over in points
+    }
+
+
+def _combinations(grid: dict[str, list[Any]]) -> list[dict[str, Any]]:
+    return [dict(zip(grid, values)) for values in itertools.product(*grid.values())]
+
+
+def _grid_point(document: Document, point: dict[str, Any]) -> tuple[str, Document]:
+    """Return the name of a point of the grid, and what it lays on the scenario."""
+    name = ",".join(f"{key.rsplit('.', 1)[-1]}={value}" for key, value in point.items())
+    value: dict[str, Any] = {}
+    places: dict[KeyPath, Place] = {}
+    for key, at in point.items():
+        over = _nested(tuple(key.split(".")), at, document.place(("grid", key)))
+        merged = merge(Document(value, places), over)
+        value, places = merged.value, merged.places
+    return re.sub(r"[^A-Za-z0-9_.+=,-]", "", name), Document(value, places)
+
+
+def _nested(path: tuple[str, ...], value: Any, place: Place) -> Document:
+    places: dict[KeyPath, Place] = {path[: depth + 1]: place for depth in range(len(path))}
+    for name in reversed(path):
+        value = {name: value}
+    return Document(value, places)
+
+
+def _unknown_cases(document: Document, cases: dict[str, Case]) -> list[Problem]:
+    """Return the means and tables that name a case which does not exist."""
+    tables = next(iter(cases.values())).scenario.tables
+    named = [(("tables", "means", mean), c) for mean, of in tables.means.items() for c in of]
+    named += [
+        (("tables", "layout", index, "cases"), case)
+        for index, table in enumerate(tables.layout)
+        for case in table.cases or []
+        if case not in tables.means
+    ]
+    return [
+        Problem(document.place(path), f"unknown case {case!r}; {did_you_mean(case, cases)}")
+        for path, case in named
+        if case not in cases
+    ]

@@ -1,0 +1,92 @@
+"""From what the schema finds wrong to sentences with a file, a line and a suggestion."""
+
+import difflib
+from collections.abc import Iterable
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from debrisest.scenario.document import Document, KeyPath, Problem
+
+
+def problems_of(error: ValidationError, document: Document, model: type[BaseModel]) -> list[Problem]:
+    """Return every problem of a document that failed the schema, at the place of its key."""
+    found = []
+    for detail in error.errors(include_url=False):
+        path = _path_in(document.value, detail)
+        name = ".".join(map(str, path)) or "scenario"
+        message = _message(detail, model)
+        found.append(Problem(document.place(path), f"{name}: {message}"))
+    return found
+
+
+def did_you_mean(given: str, allowed: Iterable[str]) -> str:
+    """Return the allowed names, and the one that was probably meant."""
+    names = list(allowed)
+    close = difflib.get_close_matches(given, names, n=1, cutoff=0.6)
+    hint = f" (did you mean {close[0]}?)" if close else ""
+    return f"allowed: {', '.join(names)}{hint}"
+
+
+def _path_in(value: Any, detail: ErrorDetails) -> KeyPath:
+    """Return the key path of an error: pydantic's location without the names of kinds."""
+    location, path = detail["loc"], []
+    for index, key in enumerate(location):
+        last = index == len(location) - 1
+        if isinstance(value, dict) and (key in value or (last and detail["type"] == "missing")):
+            value = value.get(key)
+        elif isinstance(value, list) and isinstance(key, int) and key < len(value):
+            value = value[key]
+        else:
+            continue
+        path.append(key)
+    if detail["type"].startswith("union_tag"):
+        path.append("kind")
+    return tuple(path)
+
+
+def _message(detail: ErrorDetails, model: type[BaseModel]) -> str:
+    kind, context, given = detail["type"], detail.get("ctx", {}), detail["input"]
+    if kind == "missing":
+        return "this key is missing"
+    if kind == "extra_forbidden":
+        allowed = _allowed_keys(model, detail["loc"])
+        return f"unknown key; {did_you_mean(str(detail['loc'][-1]), allowed)}"
+    if kind == "union_tag_not_found":
+        return "this key is missing: it says which kind of part this is"
+    if kind == "union_tag_invalid":
+        names = [name.strip("' ") for name in context["expected_tags"].split(",")]
+        return f"unknown kind {context['tag']!r}; {did_you_mean(context['tag'], names)}"
+    if kind == "literal_error":
+        names = [n.strip("' ") for n in context["expected"].replace(" or ", ",").split(",")]
+        return f"unknown value {given!r}; {did_you_mean(str(given), names)}"
+    if kind == "value_error":
+        return str(context["error"])
+    said = detail["msg"][0].lower() + detail["msg"][1:]
+    shown = "" if isinstance(given, dict | list) else f" (found {given!r})"
+    return said.replace("input should be", "must be") + shown
+
+
+def _allowed_keys(model: type[BaseModel], location: tuple[str | int, ...]) -> list[str]:
+    """Return the keys of the model in which an unknown key was found."""
+    models = [model]
+    for key in location[:-1]:
+        fields = [m.model_fields[str(key)].annotation for m in models if str(key) in m.model_fields]
+        tagged = [m for m in models if _tag(m) == key]
+        if fields:
+            models = [m for annotation in fields for m in _models_in(annotation)]
+        elif tagged:
+            models = tagged
+    return [name for m in models[:1] for name in m.model_fields]
+
+
+def _tag(model: type[BaseModel]) -> str | None:
+    field = model.model_fields.get("kind")
+    return get_args(field.annotation)[0] if field else None
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for inner in get_args(annotation) for model in _models_in(inner)]

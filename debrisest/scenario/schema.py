@@ -1,0 +1,227 @@
+"""What a scenario file may hold. The kinds come from the catalog."""
+
+import re
+from collections.abc import Sequence
+from functools import reduce
+from operator import or_
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, Field, create_model, model_validator
+
+from debrisest.catalog import CATALOG, kind_of
+from debrisest.clock import Clock
+from debrisest.parts.part import (
+    FilterPart,
+    Keys,
+    Part,
+    Positive,
+    ProblemPart,
+    RecoveryPart,
+    SimulationPart,
+    StartPart,
+    Window,
+)
+from debrisest.tables.statistics import STATISTICS
+from debrisest.vocabulary import VOCABULARY
+
+_WINDOW = re.compile(r"^(\d+(?:\.\d+)?)-(\d+(?:\.\d+)?) s$")
+
+
+def window_of(text: str, duration: float) -> Window:
+    """Return the time span that ``start``, ``end`` or ``a-b s`` names."""
+    if text == "start":
+        return (0.0, 0.0)
+    if text == "end":
+        return (duration, duration)
+    match = _WINDOW.match(text)
+    if match is None or float(match[1]) >= float(match[2]):
+        raise ValueError(f"a window is 'start', 'end' or a span such as '900-1400 s', not {text!r}")
+    return (float(match[1]), float(match[2]))
+
+
+def _known_window(text: str) -> str:
+    window_of(text, 0.0)
+    return text
+
+
+def _known_quantity(name: str) -> str:
+    if not VOCABULARY.get(name) or not VOCABULARY[name].table_unit:
+        allowed = ", ".join(name for name, entry in VOCABULARY.items() if entry.table_unit)
+        raise ValueError(f"no table can show {name!r}; allowed: {allowed}")
+    return name
+
+
+def _known_statistic(name: str) -> str:
+    if name not in STATISTICS:
+        raise ValueError(f"unknown statistic {name!r}; allowed: {', '.join(STATISTICS)}")
+    return name
+
+
+WindowText = Annotated[str, AfterValidator(_known_window)]
+QuantityName = Annotated[str, AfterValidator(_known_quantity)]
+StatisticName = Annotated[str, AfterValidator(_known_statistic)]
+
+
+class Divergence(Keys):
+    """A run has diverged if the RMS of a quantity over a window is above a limit."""
+
+    quantity: QuantityName
+    above: Positive = Field(description="in the unit of the tables")
+    window: WindowText
+
+
+class Table(Keys):
+    """Cells: every quantity by every window, for each case and estimator."""
+
+    table: str = Field(description="the paper's number, or a short word")
+    title: str
+    stage: Literal["recover", "filter"]
+    quantities: Annotated[list[QuantityName], Field(min_length=1)]
+    statistic: StatisticName
+    windows: Annotated[list[WindowText], Field(min_length=1)]
+    cases: list[str] | None = Field(None, description="names of cases or means; default: all")
+
+
+class Tables(Keys):
+    """How results are scored and laid out."""
+
+    published: str | None = Field(None, description="CSV of published values, beside the scenario")
+    scored_window: WindowText | None = Field(None, description="where axes are relabeled")
+    diverged: list[Divergence] = []
+    means: dict[str, list[str]] = Field({}, description="name of a mean: its cases")
+    layout: list[Table] = []
+
+
+class Estimator(Keys):
+    """Recovery, start and filter, as far as an estimator has them."""
+
+    recovery: RecoveryPart | None = None
+    problem: ProblemPart | None = None
+    start: StartPart | None = None
+    filter: FilterPart | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Estimator":
+        given = [part is not None for part in (self.problem, self.start, self.filter)]
+        if any(given) and not all(given):
+            raise ValueError("a filter needs all three of: problem, start, filter")
+        if not any(given) and self.recovery is None:
+            raise ValueError("an estimator needs a recovery or a filter")
+        return self
+
+
+def _check_needs(part: Part, given: set[str]) -> None:
+    missing = [name for name in part.needs if name not in given]
+    if missing:
+        kinds = sorted(
+            f"{role} {kind_of(giver)}"
+            for role, givers in CATALOG.items()
+            for giver in givers
+            if set(missing) & set(giver.gives)
+        )
+        raise ValueError(
+            f"{kind_of(type(part))} needs {', '.join(missing)}, which no part before it gives; "
+            f"add one of: {', '.join(kinds)}"
+        )
+    given.update(part.gives)
+
+
+_NAME = Annotated[str, Field(pattern=r"^[A-Za-z0-9_.+=,-]+$")]
+
+
+class Scenario(Keys):
+    """One case of a scenario, everything resolved."""
+
+    title: str
+    source: str = ""
+    seed: Annotated[int, Field(ge=0)]
+    runs: Annotated[int, Field(ge=1)]
+    duration_s: Positive
+    step_s: Positive
+    target: SimulationPart
+    orbit: SimulationPart | None = None
+    motion: SimulationPart
+    observers: dict[str, SimulationPart] = {}
+    sensors: dict[str, SimulationPart]
+    estimators: dict[_NAME, Estimator]
+    tables: Tables = Tables()
+
+    @model_validator(mode="after")
+    def _enough_epochs(self) -> "Scenario":
+        if self.duration_s < 2 * self.step_s:
+            raise ValueError("duration_s must be at least two steps of step_s")
+        return self
+
+    @model_validator(mode="after")
+    def _parts_fit_together(self) -> "Scenario":
+        given: set[str] = set()
+        for part in self.simulation:
+            _check_needs(part, given)
+        for estimator in self.estimators.values():
+            here = set(given)
+            for step in (estimator.recovery, estimator.start, estimator.problem):
+                if step is not None:
+                    _check_needs(step, here)
+        return self
+
+    @property
+    def clock(self) -> Clock:
+        """Return the time grid."""
+        return Clock(self.duration_s, self.step_s)
+
+    @property
+    def simulation(self) -> list[SimulationPart]:
+        """Return the parts of the simulation in the order in which data passes through them."""
+        alone = (self.target, self.orbit, self.motion)
+        parts = [part for part in alone if part is not None]
+        return [*parts, *self.observers.values(), *self.sensors.values()]
+
+    @property
+    def scored(self) -> Window:
+        """Return the window in which principal axes are relabeled: by default the last third."""
+        if self.tables.scored_window is None:
+            return (self.duration_s * 2 / 3, self.duration_s)
+        return window_of(self.tables.scored_window, self.duration_s)
+
+
+class CasesAndGrid(Keys):
+    """The keys of a scenario file that make its cases."""
+
+    cases: dict[_NAME, dict[str, Any]] = Field({}, description="name: what differs in this case")
+    grid: dict[str, Annotated[list[Any], Field(min_length=1)]] = Field(
+        {}, description="key.path: values; every combination is a case"
+    )
+
+
+class ScenarioFile(Scenario, CasesAndGrid):
+    """A scenario file: a scenario, and its cases or a grid that makes them."""
+
+
+def scenario_model(base: type[Scenario] = Scenario) -> Any:
+    """Return the scenario's model with the catalog's kinds in their places."""
+    estimator = create_model(
+        "Estimator",
+        __base__=Estimator,
+        recovery=(_kinds("recovery") | None, None),
+        problem=(_kinds("problem") | None, None),
+        start=(_kinds("start") | None, None),
+        filter=(_kinds("filter") | None, None),
+    )
+    return create_model(
+        base.__name__,
+        __base__=base,
+        target=(_kinds("target"), ...),
+        orbit=(_kinds("orbit") | None, None),
+        motion=(_kinds("motion"), ...),
+        observers=(dict[str, _kinds("observers")], {}),  # type: ignore[misc]
+        sensors=(dict[str, _kinds("sensors")], ...),  # type: ignore[misc]
+        estimators=(dict[_NAME, estimator], ...),  # type: ignore[valid-type]
+    )
+
+
+def _kinds(role: str) -> Any:
+    parts: Sequence[Any] = CATALOG[role]
+    if len({kind_of(part) for part in parts}) != len(parts):
+        raise ValueError(f"the catalog has two parts of one kind in {role!r}")
+    union = reduce(or_, parts)
+    return Annotated[union, Field(discriminator="kind")] if len(parts) > 1 else union

@@ -1,0 +1,58 @@
+"""One bad run never takes the others down."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from debrisest.arrays import Data
+from debrisest.vocabulary import VOCABULARY
+
+
+def isolate(compute: Callable[[Data], Data], data: Data) -> Data:
+    """Return ``compute(data)`` for all runs together, or run by run where that fails.
+
+    A run that raises gets NaN in every dataset and its reason in ``failure``; so does a run that
+    had failed before. The result keeps ``run``.
+    """
+    runs = len(data["run"])
+    failure = list(data.get("failure", [""] * runs))
+    good = np.array([not reason for reason in failure], dtype=bool)
+    results: list[tuple[NDArray[np.intp], Data]] = []
+    everyone = np.flatnonzero(good)
+    if len(everyone):
+        try:
+            results = [(everyone, compute(_take(data, everyone)))]
+        except Exception:
+            for run in everyone:
+                try:
+                    results.append((np.array([run]), compute(_take(data, np.array([run])))))
+                except Exception as error:
+                    failure[run] = f"{type(error).__name__}: {error}"
+    result = _scatter(results, runs) if results else {}
+    return {**result, "run": data["run"], "failure": np.array(failure)}
+
+
+def has_runs(name: str) -> bool:
+    """Return whether a dataset's first axis is the run."""
+    return VOCABULARY[name].axes[0] == "run"
+
+
+def _take(data: Data, runs: NDArray[np.intp]) -> Data:
+    return {name: value[runs] if has_runs(name) else value for name, value in data.items()}
+
+
+def _scatter(results: list[tuple[NDArray[np.intp], Data]], runs: int) -> Data:
+    whole: Data = {}
+    for name, first in results[0][1].items():
+        if not has_runs(name) or len(results[0][0]) == runs:
+            whole[name] = first
+            continue
+        values: list[Any] = [result[name] for _, result in results]
+        shape = np.max([value.shape[1:] for value in values], axis=0)
+        whole[name] = np.full((runs, *shape), np.nan)
+        for (where, _), value in zip(results, values):
+            inner = tuple(slice(length) for length in value.shape[1:])
+            whole[name][(where, *inner)] = value
+    return whole

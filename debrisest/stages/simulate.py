@@ -1,0 +1,31 @@
+"""Simulate: truth and measurements of a case, part by part."""
+
+from typing import Any
+
+from debrisest.arrays import Data
+from debrisest.draws import Draws
+from debrisest.scenario.load import Case
+
+VERSION = 1
+
+
+def inputs(case: Case, _: str) -> dict[str, Any]:
+    """Return everything that the result of this stage depends on."""
+    scenario = case.scenario
+    parts = ("target", "orbit", "motion", "observers", "sensors")
+    return {
+        "version": VERSION,
+        "case": case.name,
+        **scenario.model_dump(mode="json", include={"seed", "duration_s", "step_s", *parts}),
+        "part_versions": [part.version for part in scenario.simulation],
+    }
+
+
+def run(case: Case, _: str, data: Data) -> Data:
+    """Return truth and measurements of the runs whose numbers are in ``data``."""
+    scenario = case.scenario
+    draws = Draws(scenario.seed, case.name, data["run"].astype(int).tolist())
+    result: Data = {"time_s": scenario.clock.times}
+    for part in scenario.simulation:
+        result |= part.simulate(result, scenario.clock, draws)
+    return result

@@ -1,0 +1,164 @@
+"""HDF5 checkpoints: one file per stage and chunk of runs, whole or not there at all.
+
+A file is written under a temporary name, synchronised, and renamed. Metadata and data carry
+checksums. Datasets are flat float64 (names are text) with units and dimension scales, so that
+h5py and xarray (``engine="h5netcdf"``) read them without this package.
+"""
+
+import os
+import socket
+from datetime import UTC, datetime
+from enum import Enum
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+
+from debrisest.arrays import Data
+from debrisest.vocabulary import COORDINATES, VOCABULARY
+
+FORMAT = "debrisest checkpoint"
+SCHEMA_VERSION = 1
+_NO_COORDINATE = "This is a netCDF dimension but not a netCDF variable."
+_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+
+
+class Condition(Enum):
+    """What a path holds, as words that follow «the file is»."""
+
+    WHOLE = "whole"
+    MISSING = "missing"
+    DAMAGED = "truncated or damaged"
+    OTHER_VERSION = "of another version of debrisest"
+    FOREIGN = "not a checkpoint of debrisest"
+
+
+class Checkpoint(NamedTuple):
+    """What is known of a file without using its data."""
+
+    condition: Condition
+    attributes: dict[str, Any] = {}  # noqa: RUF012
+
+
+def write(path: Path, data: Data, attributes: dict[str, Any]) -> None:
+    """Write a checkpoint in one step: afterwards it is there and whole, or as it was before."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.tmp")
+    try:
+        with h5py.File(temporary, "w", libver="latest", track_order=True) as file:
+            _write_attributes(file, attributes)
+            _write_data(file, data)
+        _synchronise(temporary)
+        os.replace(temporary, path)
+        _synchronise(path.parent)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def inspect(path: Path) -> Checkpoint:
+    """Return what a path holds; every checksum is verified."""
+    if not path.exists():
+        return Checkpoint(Condition.MISSING)
+    with path.open("rb") as file:
+        start = file.read(len(_HDF5_SIGNATURE))
+    if start != _HDF5_SIGNATURE[: len(start)]:
+        return Checkpoint(Condition.FOREIGN)
+    try:
+        with h5py.File(path, "r") as file:
+            attributes = dict(file.attrs)
+            if attributes.get("format") != FORMAT:
+                return Checkpoint(Condition.FOREIGN)
+            if attributes.get("schema_version") != SCHEMA_VERSION:
+                return Checkpoint(Condition.OTHER_VERSION, attributes)
+            for dataset in file.values():
+                dataset[()]
+    except (OSError, RuntimeError, KeyError):
+        return Checkpoint(Condition.DAMAGED)
+    return Checkpoint(Condition.WHOLE, attributes)
+
+
+def read(path: Path, runs: int | None = None) -> Data:
+    """Return the datasets of a whole checkpoint, of the first ``runs`` runs."""
+    data: Data = {}
+    with h5py.File(path, "r") as file:
+        for name, dataset in file.items():
+            if name not in VOCABULARY:
+                continue
+            has_runs = VOCABULARY[name].axes[0] == "run"
+            value = dataset[:runs] if has_runs else dataset[()]
+            text = h5py.check_string_dtype(dataset.dtype) is not None
+            data[name] = np.array([t.decode() for t in value]) if text else value
+    return data
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove temporary files of processes of this machine that no longer run."""
+    for path in folder.rglob(".*.tmp"):
+        host, _, process = path.name.removesuffix(".tmp").rpartition(".")
+        alive = process.isdigit() and os.path.exists(f"/proc/{process}")
+        if host.endswith(socket.gethostname()) and not alive:
+            path.unlink(missing_ok=True)
+
+
+def _write_attributes(file: Any, attributes: dict[str, Any]) -> None:
+    written = {
+        "format": FORMAT,
+        "schema_version": SCHEMA_VERSION,
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "software": _software(),
+        "commit": _commit(),
+    }
+    file.attrs.update(written | attributes)
+
+
+def _write_data(file: Any, data: Data) -> None:
+    scales: dict[str, Any] = {}
+    for name in sorted(data, key=lambda name: name not in COORDINATES):
+        quantity, value = VOCABULARY[name], data[name]
+        if value.ndim != len(quantity.axes):
+            raise ValueError(f"{name} has {value.ndim} axes, the vocabulary says {quantity.axes}")
+        dataset = _create(file, name, value)
+        dataset.attrs.update({"units": quantity.unit, "long_name": quantity.long_name})
+        if name in COORDINATES:
+            dataset.make_scale(name)
+            scales[name] = dataset
+            continue
+        for axis, (label, length) in enumerate(zip(quantity.axes, value.shape)):
+            if label not in scales:
+                scales[label] = file.create_dataset(label, data=np.zeros(length))
+                scales[label].make_scale(f"{_NO_COORDINATE}{length:10d}")
+            dataset.dims[axis].attach_scale(scales[label])
+
+
+def _create(file: Any, name: str, value: Any) -> Any:
+    if value.dtype.kind in "US":
+        return file.create_dataset(name, data=value.tolist(), dtype=h5py.string_dtype())
+    checked = value.size > 0 and value.ndim > 0
+    return file.create_dataset(name, data=value.astype(np.float64), fletcher32=checked)
+
+
+def _synchronise(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+@cache
+def _software() -> str:
+    return ", ".join(f"{name} {version(name)}" for name in ("debrisest", "numpy", "scipy", "h5py"))
+
+
+@cache
+def _commit() -> str:
+    """Return the commit of a source checkout, or nothing where there is none."""
+    git = Path(__file__).resolve().parent.parent / ".git"
+    try:
+        head = (git / "HEAD").read_text().strip()
+        return (git / head[5:]).read_text().strip() if head.startswith("ref: ") else head
+    except OSError:
+        return ""

@@ -1,0 +1,146 @@
+"""The cells of a scenario's tables: measured figures beside published values."""
+
+import zlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from debrisest.arrays import Array, BoolArray
+from debrisest.scenario.load import LoadedScenario
+from debrisest.scenario.schema import Table, Tables
+from debrisest.tables.published import CellKey, Published, load_published
+from debrisest.tables.results import Result
+from debrisest.tables.statistics import bootstrap
+from debrisest.tables.verdict import Verdict, interval_meets, verdict
+from debrisest.vocabulary import VOCABULARY
+
+COLUMNS = (
+    "table,case,estimator,quantity,unit,statistic,window,published,measured,ci_low,ci_high,"
+    "bound,runs,failed,diverged,verdict"
+).split(",")
+
+Results = Mapping[tuple[str, str], Result]
+
+
+def published_values(scenario: LoadedScenario) -> dict[CellKey, Published]:
+    """Return the published values that the scenario names, if it names any."""
+    file = scenario.any.tables.published
+    return load_published(scenario.path.parent / file) if file else {}
+
+
+def cells(scenario: LoadedScenario, results: Results) -> pd.DataFrame:
+    """Return one row per cell, in the order of the layout, then case, estimator, quantity."""
+    published = published_values(scenario)
+    rows = [
+        _row(key, estimator, table, scenario, results, published.get(key))
+        for table in scenario.any.tables.layout
+        for key, estimator in _keys(table, scenario)
+    ]
+    return pd.DataFrame([row for row in rows if row is not None], columns=COLUMNS)
+
+
+def unexpected(scenario: LoadedScenario, rows: pd.DataFrame) -> list[str]:
+    """Return a sentence for each cell whose verdict is not the expected one."""
+    published = published_values(scenario)
+    found = []
+    for row in rows.to_dict("records"):
+        key = CellKey(*(row[field] for field in CellKey._fields))
+        entry = published.get(key)
+        expected = entry.expected.get(row["estimator"], []) if entry else []
+        if entry is None or not expected or row["verdict"] in expected:
+            continue
+        interval = row["ci_low"], row["ci_high"]
+        if any(interval_meets(v, *interval, entry.value, entry.factor) for v in expected):
+            continue
+        found.append(
+            f"Table {key.table}, case {key.case}, {row['estimator']}, {key.quantity}, "
+            f"{key.window}: {row['verdict']} ({row['measured']:.4g} [{row['ci_low']:.4g}, "
+            f"{row['ci_high']:.4g}], published {entry.value:.4g}), expected {' or '.join(expected)}"
+        )
+    return found
+
+
+def _keys(table: Table, scenario: LoadedScenario) -> Iterator[tuple[CellKey, str]]:
+    names = table.cases or [*scenario.cases, *scenario.any.tables.means]
+    for window in table.windows:
+        for case in names:
+            for estimator in scenario.any.estimators:
+                for quantity in table.quantities:
+                    yield CellKey(table.table, case, quantity, table.statistic, window), estimator
+
+
+def _row(
+    key: CellKey,
+    estimator: str,
+    table: Table,
+    scenario: LoadedScenario,
+    results: Results,
+    published: Published | None,
+) -> dict[str, object] | None:
+    tables = scenario.any.tables
+    members = tables.means.get(key.case, [key.case])
+    parts = [results.get((case, estimator)) for case in members]
+    dataset = _dataset(table, key.quantity)
+    present = [part for part in parts if part is not None and dataset in part.errors]
+    if not present or len(present) < len(parts):
+        return None
+    groups = [_figures(part, key, table, tables) for part in present]
+    kept = [figures[keep] for figures, keep, _ in groups]
+    seed = zlib.crc32("|".join((*key, estimator)).encode())
+    measured, low, high = (_rounded(x) for x in bootstrap(key.statistic, kept, seed))
+    runs = sum(part.runs for part in present)
+    failed = sum(len(part.failures) for part in present)
+    diverged = sum(int(lost.sum()) for *_, lost in groups)
+    value, factor = (published.value, published.factor) if published else (None, 1.0)
+    return {
+        **key._asdict(),
+        "estimator": estimator,
+        "unit": VOCABULARY[dataset].table_unit,
+        "published": value,
+        "measured": measured,
+        "ci_low": low,
+        "ci_high": high,
+        "bound": np.nan,
+        "runs": runs,
+        "failed": failed,
+        "diverged": diverged,
+        "verdict": str(verdict(measured, value, factor, (diverged + failed) / runs)),
+    }
+
+
+def _dataset(table: Table, quantity: str) -> str:
+    """Return where a quantity lies: what a recovery gives is told apart by its name."""
+    recovered = f"recovered_{quantity}"
+    return recovered if table.stage == "recover" and recovered in VOCABULARY else quantity
+
+
+def _figures(
+    part: Result, key: CellKey, table: Table, tables: Tables
+) -> tuple[Array, BoolArray, BoolArray]:
+    """Return figures per run, which of them count, and which runs diverged.
+
+    The rules of divergence speak of a filter's result; a recovery counts unless it is not finite.
+    """
+    figures = part.figures(_dataset(table, key.quantity), key.statistic, key.window)
+    lost = part.good & ~np.isfinite(figures)
+    if table.stage == "filter":
+        lost |= part.diverged(tables.diverged)
+    return figures, part.good & ~lost, lost
+
+
+def _rounded(value: float) -> float:
+    """Keep six digits, so that the last bits of a sum never show in a table."""
+    return float(f"{value:.6g}")
+
+
+def write_csv(rows: pd.DataFrame, path: Path) -> None:
+    """Write the tidy table in one step."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.tmp")
+    rows.to_csv(temporary, index=False, lineterminator="\n")
+    temporary.replace(path)
+
+
+__all__ = ["COLUMNS", "Verdict", "cells", "published_values", "unexpected", "write_csv"]

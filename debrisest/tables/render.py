@@ -1,0 +1,93 @@
+"""Tables as text: for the terminal, Markdown, LaTeX, CSV and JSON."""
+
+from collections.abc import Callable
+
+import pandas as pd
+from rich.console import Console
+from rich.table import Table
+
+from debrisest.scenario.load import LoadedScenario
+from debrisest.tables.layout import Sheet, sheets
+from debrisest.tables.verdict import LEGEND
+
+_COLOURS = {"=": "green", "<": "cyan", ">": "red", "x": "magenta"}
+
+
+def render(scenario: LoadedScenario, cells: pd.DataFrame, form: str) -> str:
+    """Return the tables of a scenario in one of FORMS."""
+    return FORMS[form](scenario, cells)
+
+
+def _csv(_: LoadedScenario, cells: pd.DataFrame) -> str:
+    return str(cells.to_csv(index=False, lineterminator="\n"))
+
+
+def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
+    return str(cells.to_json(orient="records", indent=1)) + "\n"
+
+
+def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
+    parts = [f"# {scenario.any.title}", scenario.any.source, LEGEND]
+    for sheet in sheets(scenario, cells):
+        lines = [sheet.heads, ["---"] * len(sheet.heads), *sheet.rows]
+        body = "\n".join(f"| {' | '.join(line)} |" for line in lines)
+        parts.append(f"## Table {sheet.number}: {sheet.title}\n\n{body}")
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
+    parts = [f"% {scenario.any.title}\n% {LEGEND}"]
+    for sheet in sheets(scenario, cells):
+        head, *rows = (
+            " & ".join(_escaped(text) for text in line) + r" \\"
+            for line in (sheet.heads, *sheet.rows)
+        )
+        parts.append(
+            "\\begin{table}\n"
+            f"\\caption{{{_escaped(f'Table {sheet.number}: {sheet.title}')}}}\n"
+            f"\\begin{{tabular}}{{{'l' * len(sheet.heads)}}}\n\\hline\n{head}\n\\hline\n"
+            + "\n".join(rows)
+            + "\n\\hline\n\\end{tabular}\n\\end{table}"
+        )
+    return "\n\n".join(parts) + "\n"
+
+
+def _escaped(text: str) -> str:
+    for character in "&%$#_{}":
+        text = text.replace(character, "\\" + character)
+    return text.replace("<", "$<$").replace(">", "$>$")
+
+
+def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
+    console = Console(width=110)
+    with console.capture() as capture:
+        for sheet in sheets(scenario, cells):
+            console.print(_rich_table(sheet))
+        console.print(LEGEND, style="dim")
+    return capture.get()
+
+
+def _rich_table(sheet: Sheet) -> Table:
+    table = Table(title=f"Table {sheet.number}: {sheet.title}", title_justify="left")
+    for head in sheet.heads:
+        table.add_column(head, justify="left" if head in ("case", "source") else "right")
+    previous = ""
+    for row in sheet.rows:
+        shown = ["" if row[0] == previous and "source" in sheet.heads else row[0], *row[1:]]
+        previous = row[0]
+        table.add_row(*(_coloured(text) for text in shown))
+    return table
+
+
+def _coloured(text: str) -> str:
+    colour = _COLOURS.get(text[-1:]) if " " in text else None
+    return f"[{colour}]{text}[/]" if colour else text
+
+
+FORMS: dict[str, Callable[[LoadedScenario, pd.DataFrame], str]] = {
+    "rich": _terminal,
+    "csv": _csv,
+    "md": _markdown,
+    "tex": _latex,
+    "json": _json,
+}

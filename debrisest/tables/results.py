@@ -1,0 +1,75 @@
+"""The assessed errors of a scenario, as far as they are there and up to date."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest import store
+from debrisest.arrays import Array, BoolArray, Data
+from debrisest.plan import Step
+from debrisest.scenario.schema import Divergence, window_of
+from debrisest.tables.statistics import per_run, window_mask
+from debrisest.vocabulary import table_scale
+
+
+class Result(NamedTuple):
+    """All runs of one case and estimator: errors by quantity in SI, and the reasons of failures."""
+
+    errors: Data
+    times: Array
+    duration: float
+    failures: dict[int, str]
+    runs: int
+
+    @property
+    def good(self) -> BoolArray:
+        """Return which runs (run,) gave a result."""
+        return np.array([run not in self.failures for run in range(self.runs)], dtype=bool)
+
+    def figures(self, dataset: str, statistic: str, window: str) -> Array:
+        """Return one figure per run (run,), in the unit of the tables; NaN where it failed."""
+        inside = window_mask(self.times, window_of(window, self.duration))
+        return per_run(statistic, self.errors[dataset], inside) * table_scale(dataset)
+
+    def diverged(self, rules: Iterable[Divergence]) -> BoolArray:
+        """Return which runs (run,) broke one of the rules."""
+        lost = np.zeros(self.runs, dtype=bool)
+        for rule in rules:
+            if rule.quantity in self.errors:
+                lost |= ~(self.figures(rule.quantity, "rms", rule.window) <= rule.above)
+        return lost & self.good
+
+
+def load_results(steps: Iterable[Step]) -> dict[tuple[str, str], Result]:
+    """Return the results by (case, estimator) of which every chunk is up to date."""
+    chunks: dict[tuple[str, str], list[Step]] = {}
+    for step in steps:
+        if step.stage == "assess":
+            chunks.setdefault((step.case.name, step.estimator), []).append(step)
+    return {
+        key: _joined(parts)
+        for key, parts in chunks.items()
+        if not any(step.reason for step in parts)
+    }
+
+
+def _joined(steps: list[Step]) -> Result:
+    parts = [store.read(step.path, step.runs) for step in steps]
+    runs = sum(step.runs for step in steps)
+    reasons = [str(why) for part in parts for why in part["failure"]]
+    names = {name for part in parts for name in part} - {"run", "time_s", "failure"}
+    return Result(
+        errors={name: _concatenated(name, parts) for name in sorted(names)},
+        times=parts[0]["time_s"],
+        duration=steps[0].case.scenario.duration_s,
+        failures={run: why for run, why in enumerate(reasons) if why},
+        runs=runs,
+    )
+
+
+def _concatenated(name: str, parts: list[Data]) -> Array:
+    shape = next(part[name].shape[1:] for part in parts if name in part)
+    return np.concatenate(
+        [part.get(name, np.full((len(part["run"]), *shape), np.nan)) for part in parts]
+    )

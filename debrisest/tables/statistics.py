@@ -1,0 +1,84 @@
+"""Statistics of an error over a window and over runs, with bootstrap intervals.
+
+Each statistic is a reduction over the window, which gives one figure per run, and one over runs.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray
+
+RESAMPLES = 2000
+CONFIDENCE = 0.95
+
+
+class Statistic(NamedTuple):
+    """``per_run`` reduces (run, time) to (run,), ``over_runs`` reduces (..., run) to (...)."""
+
+    per_run: Callable[[Array], Array]
+    over_runs: Callable[[Array], Array]
+
+
+def _rms(values: Array) -> Array:
+    return np.sqrt(np.mean(values**2, axis=-1))
+
+
+def _mean(values: Array) -> Array:
+    return np.mean(values, axis=-1)
+
+
+def _mean_absolute(values: Array) -> Array:
+    return np.mean(np.abs(values), axis=-1)
+
+
+def _percentile(share: float) -> Callable[[Array], Array]:
+    return lambda values: np.percentile(values, share, axis=-1)
+
+
+STATISTICS: dict[str, Statistic] = {
+    "rmse": Statistic(_rms, _mean),
+    "rms": Statistic(_rms, _rms),
+    "median": Statistic(_rms, _percentile(50)),
+    "p50": Statistic(_mean_absolute, _percentile(50)),
+    "p70": Statistic(_mean_absolute, _percentile(70)),
+    "p90": Statistic(_mean_absolute, _percentile(90)),
+    "p100": Statistic(_mean_absolute, _percentile(100)),
+    "mean": Statistic(_mean, _mean),
+    "value": Statistic(_mean, _mean),
+    "share": Statistic(_mean, _mean),
+}
+
+
+def window_mask(times: Array, window: tuple[float, float]) -> BoolArray:
+    """Return which epochs (time,) lie in ``[start, end)``; an instant takes the nearest epoch."""
+    start, end = window
+    if start == end:
+        return np.arange(len(times)) == np.argmin(np.abs(times - start))
+    return (times >= start) & (times < end)
+
+
+def per_run(name: str, values: Array, inside: BoolArray) -> Array:
+    """Return one figure per run (run,) of an error (run, time) over a window, or of (run,)."""
+    series = values[:, inside] if values.ndim == 2 else values[:, None]
+    return STATISTICS[name].per_run(series)
+
+
+def bootstrap(name: str, groups: list[Array], seed: int) -> tuple[float, float, float]:
+    """Return a statistic over runs, averaged over groups, and its confidence interval.
+
+    Each group holds the figures (run,) of one case; runs are resampled within their group, since
+    the cases are fixed and the runs are a sample. NaN where a group is empty.
+    """
+    over_runs = STATISTICS[name].over_runs
+    if not groups or any(len(group) == 0 for group in groups):
+        return (np.nan, np.nan, np.nan)
+    rng = np.random.default_rng(seed)
+    resampled = [
+        over_runs(group[rng.integers(len(group), size=(RESAMPLES, len(group)))])
+        for group in groups
+    ]
+    tail = (1 - CONFIDENCE) / 2
+    low, high = np.quantile(np.mean(resampled, axis=0), [tail, 1 - tail])
+    return (float(np.mean([over_runs(group) for group in groups])), float(low), float(high))

@@ -1,0 +1,106 @@
+"""Every stored quantity: name, axes, unit. The store, the tables and the plots read them here.
+
+Values are SI and radians; an error's table unit is what the tables print. Frames are suffixes:
+``i`` inertial axes, ``b`` body axes, ``f`` the frame built on the target's first three features,
+``c`` camera. NaN means "not observed" or "not available" everywhere.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Quantity(NamedTuple):
+    """What a dataset holds: its axes, its SI unit, its name in words and its unit in tables."""
+
+    axes: tuple[str, ...]
+    unit: str
+    long_name: str
+    table_unit: str = ""
+
+
+COORDINATES = ("run", "time_s", "feature", "covariance_time_s", "error_name")
+"""Axes that have a coordinate of the same name; every other axis is a plain index."""
+
+AXIS_LENGTH = {"quaternion": 4, "axis": 3, "row": 3, "column": 3}
+
+_TIME = ("run", "time_s")
+_TIME_VECTOR = (*_TIME, "axis")
+_TIME_QUATERNION = (*_TIME, "quaternion")
+_RUN = ("run",)
+
+VOCABULARY: dict[str, Quantity] = {
+    # coordinates
+    "run": Quantity(_RUN, "1", "Monte Carlo run"),
+    "time_s": Quantity(("time_s",), "s", "time since the start of the scenario"),
+    "feature": Quantity(("feature",), "", "name of the feature of the target"),
+    "covariance_time_s": Quantity(("covariance_time_s",), "s", "times of the stored covariances"),
+    "error_name": Quantity(("error_name",), "", "components of the filter's error state"),
+    "failure": Quantity(_RUN, "", "why the run gave no result (empty: it did)"),
+    # simulate
+    "orbit_position": Quantity(_TIME_VECTOR, "m", "target's centre of mass, Earth-centred inertial"),
+    "orbit_velocity": Quantity(_TIME_VECTOR, "m/s", "target's velocity, Earth-centred inertial"),
+    "true_q_ib": Quantity(_TIME_QUATERNION, "1", "attitude of the body, body to inertial axes"),
+    "true_rate_b": Quantity(_TIME_VECTOR, "rad/s", "angular rate of the body in body axes"),
+    "true_inertia_b": Quantity(("run", "row", "column"), "kg m2", "inertia tensor in body axes"),
+    "true_point_b": Quantity(("run", "feature", "axis"), "m", "features in body axes"),
+    "true_normal_b": Quantity(("run", "feature", "axis"), "1", "outward normals at the features"),
+    "known_point_f": Quantity(
+        ("run", "feature", "axis"), "m", "features as the estimators know them, in their own frame"
+    ),
+    "true_position": Quantity(_TIME_VECTOR, "m", "target relative to the chaser"),
+    "true_velocity": Quantity(_TIME_VECTOR, "m/s", "target's velocity relative to the chaser"),
+    "measured_point": Quantity((*_TIME, "feature", "axis"), "m", "feature relative to the chaser"),
+    # recover
+    "raw_q_if": Quantity(_TIME_QUATERNION, "1", "attitude from the points of one epoch"),
+    "q_if": Quantity(_TIME_QUATERNION, "1", "recovered attitude of the feature frame"),
+    "piece": Quantity(_TIME, "1", "piece of uninterrupted samples the epoch belongs to"),
+    "sign": Quantity(("run", "piece_number"), "1", "sign given to each piece"),
+    "recovery_status": Quantity(("run", "quaternion"), "1", "how the solver of a component ended"),
+    "objective": Quantity(("run", "quaternion"), "1", "objective of each component's recovery"),
+    "iterations": Quantity(("run", "quaternion"), "1", "iterations of each component's recovery"),
+    # filter
+    "q_ib": Quantity(_TIME_QUATERNION, "1", "estimated attitude of principal axes"),
+    "q_ib_sigma": Quantity(_TIME_QUATERNION, "1", "1-sigma of q_ib"),
+    "q_bf": Quantity(_TIME_QUATERNION, "1", "estimated attitude of features in principal axes"),
+    "q_bf_sigma": Quantity(_TIME_QUATERNION, "1", "1-sigma of q_bf"),
+    "rate_b": Quantity(_TIME_VECTOR, "rad/s", "estimated angular rate in principal axes"),
+    "rate_b_sigma": Quantity(_TIME_VECTOR, "rad/s", "1-sigma of rate_b"),
+    "moments_b": Quantity(_TIME_VECTOR, "1", "principal moments of inertia, unit norm"),
+    "moments_b_sigma": Quantity(_TIME_VECTOR, "1", "1-sigma of moments_b"),
+    "covariance": Quantity(
+        ("run", "covariance_time_s", "error_name", "error_column"), "", "covariance of the state"
+    ),
+    "nis": Quantity(_TIME, "1", "normalised innovation squared"),
+    "nis_dof": Quantity(_TIME, "1", "measured components at the epoch"),
+    "repairs": Quantity(_RUN, "1", "covariance repairs"),
+    "filter_status": Quantity(_RUN, "1", "how the filter ended"),
+    # assess
+    "relabeling": Quantity(("run", "row", "column"), "1", "estimated to true principal axes"),
+    "recovered_pitch": Quantity(_TIME, "rad", "pitch error of the recovered attitude", "deg"),
+    "recovered_attitude": Quantity(_TIME, "rad", "angle error of the recovered attitude", "deg"),
+    "coverage": Quantity(_RUN, "1", "share of epochs with an attitude", "1"),
+    "pieces": Quantity(_RUN, "1", "pieces of uninterrupted samples", "1"),
+    "signs_right": Quantity(_RUN, "1", "share of sign decisions that were right", "1"),
+    "signs_all_right": Quantity(_RUN, "1", "every sign of the run right", "1"),
+    "solved": Quantity(_RUN, "1", "recovery converged in every component", "1"),
+    "pitch": Quantity(_TIME, "rad", "pitch error", "deg"),
+    "attitude": Quantity(_TIME, "rad", "angle of the attitude error", "deg"),
+    "rate": Quantity(_TIME, "rad/s", "norm of the rate error", "deg/s"),
+    "rate_1": Quantity(_TIME, "rad/s", "rate error about principal axis 1", "deg/s"),
+    "rate_2": Quantity(_TIME, "rad/s", "rate error about principal axis 2", "deg/s"),
+    "rate_3": Quantity(_TIME, "rad/s", "rate error about principal axis 3", "deg/s"),
+    "inertia_1": Quantity(_TIME, "1", "error of principal moment 1 (unit norm)", "1"),
+    "inertia_2": Quantity(_TIME, "1", "error of principal moment 2 (unit norm)", "1"),
+    "inertia_3": Quantity(_TIME, "1", "error of principal moment 3 (unit norm)", "1"),
+    "convergence_time": Quantity(_RUN, "s", "rate error below its limit for good", "s"),
+    "nis_mean": Quantity(_TIME, "1", "normalised innovation squared per dimension", "1"),
+}
+
+_TABLE_SCALE = {("rad", "deg"): 180 / np.pi, ("rad/s", "deg/s"): 180 / np.pi, ("m", "km"): 1e-3}
+
+
+def table_scale(name: str) -> float:
+    """Return the factor from a quantity's SI unit to the unit that the tables print."""
+    quantity = VOCABULARY[name]
+    return _TABLE_SCALE.get((quantity.unit, quantity.table_unit), 1.0)
