@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -220,13 +221,13 @@ def _show_tables(
 
     wrong: list[str] = []
     for scenario in scenarios:
-        rows = _told(lambda scenario=scenario: tabulate(scenario, out, selection))
+        rows = _told(partial(tabulate, scenario, out, selection))
         if rows.empty:
             print(f"{scenario.name}: no results that are up to date; run sweep", file=sys.stderr)
             continue
         write_tables(scenario, out, rows)
         print(render(scenario, rows, form), end="")
-        wrong += _told(lambda scenario=scenario, rows=rows: unexpected(scenario, rows))
+        wrong += _told(partial(unexpected, scenario, rows))
     if check:
         for sentence in wrong:
             print(sentence, file=sys.stderr)

@@ -16,4 +16,4 @@ class Clock(NamedTuple):
     @property
     def times(self) -> Array:
         """Return the epochs (time,) in seconds; the end itself is not one of them."""
-        return np.arange(round(self.duration / self.step)) * self.step
+        return np.arange(round(self.duration / self.step), dtype=np.float64) * self.step

@@ -124,4 +124,3 @@ def _attributes(step: Step) -> dict[str, Any]:
         "scenario": step.case.as_yaml(),
         "seed": step.case.scenario.seed,
     }
-

@@ -54,7 +54,8 @@ def _bar(steps: int) -> Iterator[Progress]:
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bars
 
-    columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), TextColumn("{task.fields[last]}")
+    last = TextColumn("{task.fields[last]}")
+    columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), last
     with Bars(*columns, console=Console(stderr=True)) as bars:
         task = bars.add_task("steps", total=steps, last="")
 

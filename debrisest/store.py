@@ -40,7 +40,7 @@ class Checkpoint(NamedTuple):
     """What is known of a file without using its data."""
 
     condition: Condition
-    attributes: dict[str, Any] = {}  # noqa: RUF012
+    attributes: dict[str, Any] = {}
 
 
 def write(path: Path, data: Data, attributes: dict[str, Any]) -> None:

@@ -38,7 +38,7 @@ VOCABULARY: dict[str, Quantity] = {
     "error_name": Quantity(("error_name",), "", "components of the filter's error state"),
     "failure": Quantity(_RUN, "", "why the run gave no result (empty: it did)"),
     # simulate
-    "orbit_position": Quantity(_TIME_VECTOR, "m", "target's centre of mass, Earth-centred inertial"),
+    "orbit_position": Quantity(_TIME_VECTOR, "m", "target's position, Earth-centred inertial"),
     "orbit_velocity": Quantity(_TIME_VECTOR, "m/s", "target's velocity, Earth-centred inertial"),
     "true_q_ib": Quantity(_TIME_QUATERNION, "1", "attitude of the body, body to inertial axes"),
     "true_rate_b": Quantity(_TIME_VECTOR, "rad/s", "angular rate of the body in body axes"),

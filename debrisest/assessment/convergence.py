@@ -12,4 +12,5 @@ def convergence_time(limit: float, error: Array, times: Array) -> Array:
     """
     above = ~(np.abs(error) <= limit)
     settled = np.where(above, np.arange(1, len(times) + 1), 0).max(axis=-1)
-    return np.append(times, np.nan)[settled]
+    settling: Array = np.append(times, np.nan)[settled]
+    return settling

@@ -61,8 +61,9 @@ def unscented(
     * Eq 32: the factor of sqrt(P) is sqrt(alpha^2 (n_e + kappa)).
     * Eqs 34-35: mean and covariance are those of the predicted points, the covariance about
       the mean.
-    * Eq 36: the predicted points are measured as they are, as printed; `redraw` draws new
-      ones from the predicted covariance, which then includes the process noise.
+    * Eq 36: the predicted points are measured as they are, as printed, so S and C lack Q;
+      with `redraw` new ones are drawn from the predicted covariance, Q included, and on a
+      linear model the filter is the Kalman filter whatever Q.
     * Eq 42: P- - K S K^T is evaluated as (dX - K dY) W (dX - K dY)^T + K R K^T + Q, equal but
       symmetric, and positive when the weights are.
 

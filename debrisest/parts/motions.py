@@ -8,6 +8,7 @@ from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws
+
 # GG
 tumble = None
 from debrisest.dynamics.inertia import principal_axes

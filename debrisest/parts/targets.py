@@ -16,7 +16,7 @@ def _possible_inertia(rows: list[float] | list[list[float]]) -> list[float] | li
     tensor = inertia_tensor(rows)
     if not np.allclose(tensor, tensor.T, rtol=1e-9):
         raise ValueError("the inertia tensor must be symmetric")
-    moments = np.linalg.eigvalsh(tensor)
+    moments = [float(moment) for moment in np.linalg.eigvalsh(tensor)]
     if moments[0] <= 0:
         raise ValueError(f"the principal moments must be positive, they are {_text(moments)}")
     if moments[2] > (moments[0] + moments[1]) * (1 + 1e-9):
@@ -27,7 +27,7 @@ def _possible_inertia(rows: list[float] | list[list[float]]) -> list[float] | li
     return rows
 
 
-def _text(moments: Array) -> str:
+def _text(moments: list[float]) -> str:
     return ", ".join(f"{moment:.6g}" for moment in moments)
 
 
@@ -93,7 +93,7 @@ class RigidPoints(SimulationPart):
 
     def _normals(self) -> Array:
         normals = np.array([feature.normal for feature in self.points.values()])
-        return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+        return np.asarray(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
 
 
 def _each_run(value: Array, runs: int) -> Array:

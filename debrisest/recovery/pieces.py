@@ -31,12 +31,6 @@ def continuous(q: Array, piece: IntArray) -> Array:
     return q * (sign * _at_start(sign, piece))[..., None]
 
 
-def epoch_signs(sign: Array, piece: IntArray) -> Array:
-    """Sign (..., time) of every epoch from that of its piece (..., piece); NaN if not observed."""
-    of_piece = np.take_along_axis(sign, np.maximum(piece, 0), axis=-1)
-    return np.where(piece >= 0, of_piece, np.nan)
-
-
 def _starts(observed: BoolArray) -> BoolArray:
     """Epochs that are observed while the one before is not."""
     starts = observed.copy()

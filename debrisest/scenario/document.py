@@ -51,7 +51,7 @@ class Document:
 
 
 class _Loader(yaml.SafeLoader):
-    yaml_implicit_resolvers: dict[Any, Any] = {}  # noqa: RUF012
+    yaml_implicit_resolvers: dict[Any, Any] = {}
 
 
 for _tag, _pattern, _first in (
@@ -128,7 +128,7 @@ def _construct(
             for index, item in enumerate(node.value)
         ]
     if not isinstance(node, yaml.MappingNode):
-        return None if node is None else loader.construct_object(node, deep=True)  # type: ignore[no-untyped-call]
+        return None if node is None else loader.construct_object(node, deep=True)
     value: dict[str, Any] = {}
     for key_node, value_node in node.value:
         place, key = _place(source, key_node.start_mark), str(key_node.value)

@@ -76,7 +76,7 @@ def load_scenario(path: Path, overrides: Sequence[str] = ()) -> LoadedScenario:
     if problems and not document.value:
         raise UserError(map(str, problems))
     laid_on = [_override(text) for text in overrides]
-    own = {key: document.value[key] for key in ("cases", "grid") if key in document.value}
+    own: dict[str, Any] = {k: v for k, v in document.value.items() if k in ("cases", "grid")}
     listed, found = _validated(Document(own, document.places), CasesAndGrid)
     problems += found
     cases: dict[str, Case] = {}
@@ -175,7 +175,9 @@ def _nested(path: tuple[str, ...], value: Any, place: Place) -> Document:
 def _unknown_cases(document: Document, cases: dict[str, Case]) -> list[Problem]:
     """Return the means and tables that name a case which does not exist."""
     tables = next(iter(cases.values())).scenario.tables
-    named = [(("tables", "means", mean), c) for mean, of in tables.means.items() for c in of]
+    named: list[tuple[KeyPath, str]] = [
+        (("tables", "means", mean), case) for mean, of in tables.means.items() for case in of
+    ]
     named += [
         (("tables", "layout", index, "cases"), case)
         for index, table in enumerate(tables.layout)

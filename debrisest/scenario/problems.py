@@ -10,7 +10,9 @@ from pydantic_core import ErrorDetails
 from debrisest.scenario.document import Document, KeyPath, Problem
 
 
-def problems_of(error: ValidationError, document: Document, model: type[BaseModel]) -> list[Problem]:
+def problems_of(
+    error: ValidationError, document: Document, model: type[BaseModel]
+) -> list[Problem]:
     """Return every problem of a document that failed the schema, at the place of its key."""
     found = []
     for detail in error.errors(include_url=False):

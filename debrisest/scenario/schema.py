@@ -199,24 +199,24 @@ class ScenarioFile(Scenario, CasesAndGrid):
 
 def scenario_model(base: type[Scenario] = Scenario) -> Any:
     """Return the scenario's model with the catalog's kinds in their places."""
-    estimator = create_model(
-        "Estimator",
-        __base__=Estimator,
-        recovery=(_kinds("recovery") | None, None),
-        problem=(_kinds("problem") | None, None),
-        start=(_kinds("start") | None, None),
-        filter=(_kinds("filter") | None, None),
-    )
-    return create_model(
+    create: Any = create_model
+    roles = ("recovery", "problem", "start", "filter")
+    optional = {role: (_kinds(role) | None, None) for role in roles}
+    estimator = create("Estimator", __base__=Estimator, **optional)
+    return create(
         base.__name__,
         __base__=base,
         target=(_kinds("target"), ...),
         orbit=(_kinds("orbit") | None, None),
         motion=(_kinds("motion"), ...),
-        observers=(dict[str, _kinds("observers")], {}),  # type: ignore[misc]
-        sensors=(dict[str, _kinds("sensors")], ...),  # type: ignore[misc]
-        estimators=(dict[_NAME, estimator], ...),  # type: ignore[valid-type]
+        observers=(_by_name(_kinds("observers")), {}),
+        sensors=(_by_name(_kinds("sensors")), ...),
+        estimators=(_by_name(estimator), ...),
     )
+
+
+def _by_name(value: Any) -> Any:
+    return dict[_NAME, value]
 
 
 def _kinds(role: str) -> Any:

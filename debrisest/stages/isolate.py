@@ -53,6 +53,6 @@ def _scatter(results: list[tuple[NDArray[np.intp], Data]], runs: int) -> Data:
         shape = np.max([value.shape[1:] for value in values], axis=0)
         whole[name] = np.full((runs, *shape), np.nan)
         for (where, _), value in zip(results, values):
-            inner = tuple(slice(length) for length in value.shape[1:])
+            inner: list[Any] = [slice(length) for length in value.shape[1:]]
             whole[name][(where, *inner)] = value
     return whole

@@ -13,13 +13,14 @@ from debrisest.scenario.schema import Table, Tables
 from debrisest.tables.published import CellKey, Published, load_published
 from debrisest.tables.results import Result
 from debrisest.tables.statistics import bootstrap
-from debrisest.tables.verdict import Verdict, interval_meets, verdict
+from debrisest.tables.verdict import interval_meets, verdict
 from debrisest.vocabulary import VOCABULARY
 
-COLUMNS = (
-    "table,case,estimator,quantity,unit,statistic,window,published,measured,ci_low,ci_high,"
-    "bound,runs,failed,diverged,verdict"
-).split(",")
+COLUMNS = [
+    *("table", "case", "estimator", "quantity", "unit", "statistic", "window"),
+    *("published", "measured", "ci_low", "ci_high", "bound"),
+    *("runs", "failed", "diverged", "verdict"),
+]
 
 Results = Mapping[tuple[str, str], Result]
 
@@ -141,6 +142,3 @@ def write_csv(rows: pd.DataFrame, path: Path) -> None:
     temporary = path.with_name(f".{path.name}.tmp")
     rows.to_csv(temporary, index=False, lineterminator="\n")
     temporary.replace(path)
-
-
-__all__ = ["COLUMNS", "Verdict", "cells", "published_values", "unexpected", "write_csv"]

@@ -1,6 +1,5 @@
 """Tables laid out as in the paper: a row per case, the sources side by side."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import pandas as pd
@@ -44,7 +43,7 @@ def _grid(cells: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
     sources = _sources(cells)
     if len(names) == 1:
         rows = [
-            [case, *(_text(part, source, names[0][0]) for source in sources)]
+            [str(case), *(_text(part, source, names[0][0]) for source in sources)]
             for case, part in cells.groupby("case", sort=False)
         ]
         return ["case", *(f"{source} {heads[0]}" for source in sources)], rows
@@ -67,11 +66,9 @@ def _text(part: pd.DataFrame, source: str, quantity: str) -> str:
     if source == PAPER:
         published = part["published"].dropna()
         return f"{published.iloc[0]:.3g}" if len(published) else ""
-    for row in _records(part[part["estimator"] == source]):
-        figure = f"{row['measured']:.3g}" if pd.notna(row["measured"]) else "-"
-        return f"{figure} {SYMBOLS[Verdict(row['verdict'])]}".rstrip()
-    return ""
-
-
-def _records(part: pd.DataFrame) -> Iterator[dict[str, object]]:
-    yield from part.to_dict("records")  # type: ignore[misc]
+    own = part[part["estimator"] == source]
+    if own.empty:
+        return ""
+    measured, verdict = own["measured"].iloc[0], own["verdict"].iloc[0]
+    figure = f"{measured:.3g}" if pd.notna(measured) else "-"
+    return f"{figure} {SYMBOLS[Verdict(verdict)]}".rstrip()

@@ -22,15 +22,15 @@ class Statistic(NamedTuple):
 
 
 def _rms(values: Array) -> Array:
-    return np.sqrt(np.mean(values**2, axis=-1))
+    return np.asarray(np.sqrt(np.mean(values**2, axis=-1)))
 
 
 def _mean(values: Array) -> Array:
-    return np.mean(values, axis=-1)
+    return np.asarray(np.mean(values, axis=-1))
 
 
 def _mean_absolute(values: Array) -> Array:
-    return np.mean(np.abs(values), axis=-1)
+    return np.asarray(np.mean(np.abs(values), axis=-1))
 
 
 def _percentile(share: float) -> Callable[[Array], Array]:
@@ -55,7 +55,7 @@ def window_mask(times: Array, window: tuple[float, float]) -> BoolArray:
     """Return which epochs (time,) lie in ``[start, end)``; an instant takes the nearest epoch."""
     start, end = window
     if start == end:
-        return np.arange(len(times)) == np.argmin(np.abs(times - start))
+        return np.asarray(np.arange(len(times)) == np.argmin(np.abs(times - start)))
     return (times >= start) & (times < end)
 
 
@@ -76,8 +76,7 @@ def bootstrap(name: str, groups: list[Array], seed: int) -> tuple[float, float, 
         return (np.nan, np.nan, np.nan)
     rng = np.random.default_rng(seed)
     resampled = [
-        over_runs(group[rng.integers(len(group), size=(RESAMPLES, len(group)))])
-        for group in groups
+        over_runs(group[rng.integers(len(group), size=(RESAMPLES, len(group)))]) for group in groups
     ]
     tail = (1 - CONFIDENCE) / 2
     low, high = np.quantile(np.mean(resampled, axis=0), [tail, 1 - tail])
