@@ -1,8 +1,8 @@
 """Jacobi's elliptic functions, accurate up to the modulus 1.
 
-`scipy.special.ellipj` knows the parameter ``m = k^2`` only, loses digits as it nears 1, and is wrong
-beyond ``1 - 1e-10`` for arguments longer than a quarter period. Here the complement ``1 - m`` is
-given, which a tumbling body near its separatrix knows to full precision.
+`scipy.special.ellipj` takes the parameter ``m = k^2``, which near 1 has lost the digits that matter,
+and beyond ``1 - 1e-10`` it is wrong for arguments longer than a quarter period. Here the complement
+``1 - m`` is given, which a body that tumbles near its separatrix has to full precision.
 """
 
 import numpy as np
@@ -34,8 +34,8 @@ def _amplitude(argument: Array, complement: Array) -> Array:
     phase = np.ldexp(means[-1][0] * argument, len(means) - 1)
     for mean, geometric, difference in means[:0:-1]:
         sine, cosine = np.sin(phase), np.cos(phase)
-        turn = np.arctan2(difference * sine, np.sqrt((mean * cosine) ** 2 + (geometric * sine) ** 2))
-        phase = 0.5 * (phase + turn)
+        adjacent = np.sqrt((mean * cosine) ** 2 + (geometric * sine) ** 2)
+        phase = 0.5 * (phase + np.arctan2(difference * sine, adjacent))
     return phase
 
 

@@ -20,10 +20,11 @@ _TINY = 1e-150  # a frequency or an angular momentum that stands for zero
 def torque_free(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[Array, Array]:
     """Attitude ``q_ib (..., time, 4)`` and rate ``(..., time, 3)``, rad/s, in principal axes.
 
-    ``times (time,)``, s, count from the epoch of ``q0 (..., 4)`` and ``rate0 (..., 3)`` and may have
-    any step, order and sign. ``moments (..., 3)`` are positive, of any scale and in any order.
+    ``times (time,)``, s, count from the epoch of ``q0 (..., 4)`` and ``rate0 (..., 3)``; they may
+    have any step, order and sign. ``moments (..., 3)`` are positive, of any scale and in any order.
     """
-    rate0, moments = np.broadcast_arrays(rate0, moments)
+    shape = np.broadcast_shapes(q0.shape[:-1], rate0.shape[:-1], moments.shape[:-1])
+    rate0, moments = np.broadcast_to(rate0, (*shape, 3)), np.broadcast_to(moments, (*shape, 3))
     order = _axis_order(rate0, moments)
     nutation = _nutation(_pick(rate0, order), _pick(_slopes(moments), order))
     ordered_rate = nutation.rate(times)
@@ -72,7 +73,7 @@ class _Nutation:
     k2_sn2: Array
 
     def rate(self, times: Array) -> Array:
-        """Rates ``(..., time, 3)`` by the addition theorem; every sum in its divisor is positive."""
+        """Rates ``(..., time, 3)`` by the addition theorem; its divisor is a sum of squares."""
         a, b, c = np.moveaxis(self.rate0, -1, 0)[..., None]
         slope_a, slope_b, slope_c = np.moveaxis(self.slope, -1, 0)[..., None]
         sn, cn, dn = elliptic(self.frequency * times, self.complement)
