@@ -1,8 +1,8 @@
 """Jacobi's elliptic functions, accurate up to the modulus 1.
 
-`scipy.special.ellipj` takes the parameter ``m = k^2``, which near 1 has lost the digits that matter,
-and beyond ``1 - 1e-10`` it is wrong for arguments longer than a quarter period. Here the complement
-``1 - m`` is given, which a body that tumbles near its separatrix has to full precision.
+`scipy.special.ellipj` takes the parameter ``m = k^2``, which near 1 has lost the digits that
+matter, and beyond ``1 - 1e-10`` it is wrong for arguments longer than a quarter period. Here the
+complement ``1 - m`` is given, which a body that tumbles near its separatrix has in full.
 """
 
 import numpy as np

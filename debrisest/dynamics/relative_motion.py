@@ -18,7 +18,7 @@ def hill_frame(position: Array, velocity: Array) -> Array:
 
 
 def hold(position: Array, velocity: Array, offset_h: Array) -> Array:
-    """Chaser position minus target position ``(..., 3)``, inertial axes, for a fixed Hill offset."""
+    """Chaser position from the target ``(..., 3)``, inertial axes, for a fixed Hill offset."""
     return np.asarray((hill_frame(position, velocity) @ offset_h[..., None])[..., 0])
 
 

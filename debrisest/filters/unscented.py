@@ -5,12 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.arrays import Array, IntArray
+from debrisest.filters.covariance import solve, square_root
+from debrisest.filters.history import History, HistoryWriter
 from debrisest.filters.missing import drop_missing
-from debrisest.filters.model import History, HistoryWriter, Model, add, subtract
-
-_SMALLEST_RATIO = 1e-12
-_SMALLEST_VARIANCE = 1e-30
+from debrisest.filters.model import Model, add, subtract
 
 
 class UnscentedParameters(NamedTuple):
@@ -122,7 +121,7 @@ def _predict(
 
 
 def _draw(rule: _Rule, mean: Array, covariance: Array) -> _Prediction:
-    root, repaired = _square_root(covariance)
+    root, repaired = square_root(covariance)
     runs, n_e = covariance.shape[:2]
     errors = np.zeros((runs, 2 * n_e + 1, n_e))
     np.multiply(rule.scale, np.swapaxes(root, -2, -1), out=errors[:, 1 : n_e + 1])
@@ -145,7 +144,7 @@ def _update(
         innovation, response, noise = drop_missing(measured, innovation, response, noise)
     weighted = np.swapaxes(rule.covariance_weights[:, None] * response, -2, -1)
     cross = weighted @ predicted.deviations
-    solved = _solve(
+    solved = solve(
         weighted @ response + noise, np.concatenate([cross, innovation[..., None]], axis=-1)
     )
     gain = solved[..., :-1]
@@ -167,44 +166,3 @@ def _second_moment(rule: _Rule, deviations: Array) -> Array:
 
 def _gram(a: Array) -> Array:
     return np.swapaxes(a, -2, -1) @ a
-
-
-def _solve(matrix: Array, right: Array) -> Array:
-    """Solution per run; NaN where the matrix is singular."""
-    try:
-        return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        sign, _ = np.linalg.slogdet(matrix)
-        singular = ~(np.abs(sign) > 0.0)[:, None, None]
-        solved = np.linalg.solve(np.where(singular, np.eye(matrix.shape[-1]), matrix), right)
-        return np.where(singular, np.nan, solved)
-
-
-def _square_root(covariance: Array) -> tuple[Array, BoolArray]:
-    """Lower triangular factor per run, and which runs had to be repaired to have one."""
-    try:
-        root = np.asarray(np.linalg.cholesky(covariance), dtype=np.float64)
-        return root, np.zeros(len(covariance), dtype=np.bool_)
-    except np.linalg.LinAlgError:
-        sound = np.array([_has_factor(matrix) for matrix in covariance])
-    repaired: BoolArray = ~sound & np.isfinite(covariance).all((-2, -1))
-    root = np.full_like(covariance, np.nan)
-    root[sound] = np.linalg.cholesky(covariance[sound])
-    root[repaired] = _nearest_factor(covariance[repaired])
-    return root, repaired
-
-
-def _has_factor(matrix: Array) -> bool:
-    try:
-        np.linalg.cholesky(matrix)
-    except np.linalg.LinAlgError:
-        return False
-    return True
-
-
-def _nearest_factor(covariance: Array) -> Array:
-    """Factor after clipping the eigenvalues at 1e-12 of the largest."""
-    values, vectors = np.linalg.eigh(0.5 * covariance + 0.5 * np.swapaxes(covariance, -2, -1))
-    floor = np.maximum(_SMALLEST_RATIO * values[:, -1:], _SMALLEST_VARIANCE)
-    rows = np.sqrt(np.maximum(values, floor))[..., None] * np.swapaxes(vectors, -2, -1)
-    return np.asarray(np.swapaxes(np.linalg.qr(rows, mode="r"), -2, -1), dtype=np.float64)

@@ -3,7 +3,8 @@
 from typing import Literal
 
 from debrisest.arrays import Array
-from debrisest.filters.model import History, Model
+from debrisest.filters.history import History
+from debrisest.filters.model import Model
 from debrisest.filters.unscented import UnscentedParameters, unscented
 from debrisest.parts.part import FilterPart, Positive
 

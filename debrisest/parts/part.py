@@ -9,7 +9,8 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
-from debrisest.filters.model import History, Model
+from debrisest.filters.history import History
+from debrisest.filters.model import Model
 
 Window = tuple[float, float]
 """From the first time (included) to the second (excluded), in seconds."""

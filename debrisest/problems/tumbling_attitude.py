@@ -22,7 +22,8 @@ from debrisest.assessment.principal_axes import best_relabeling
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.dynamics.inertia import principal_axes
-from debrisest.filters.model import History, Model
+from debrisest.filters.history import History
+from debrisest.filters.model import Model
 from debrisest.parts.part import Keys, Positive, ProblemPart, Window
 
 Q_IB, Q_BF, RATE, MOMENTS = slice(0, 4), slice(4, 8), slice(8, 11), slice(11, 14)
@@ -38,35 +39,53 @@ CONVERGED = np.radians(0.5)
 """The rate has converged once its error stays below this, rad/s."""
 
 
-def derivative(state: Array) -> Array:
-    """Return the time derivative of states (..., 14), per second (Eq 29, corrected)."""
-    q0, q1, q2, q3 = np.moveaxis(state[..., Q_IB], -1, 0)
-    w1, w2, w3 = np.moveaxis(state[..., RATE], -1, 0)
-    given = np.moveaxis(state[..., MOMENTS], -1, 0)
-    j1, j2, j3 = np.copysign(np.maximum(np.abs(given), LEAST_MOMENT), given)
-    rates = np.zeros_like(state)
-    rates[..., 0] = -0.5 * (q1 * w1 + q2 * w2 + q3 * w3)
-    rates[..., 1] = 0.5 * (q0 * w1 + q2 * w3 - q3 * w2)
-    rates[..., 2] = 0.5 * (q0 * w2 + q3 * w1 - q1 * w3)
-    rates[..., 3] = 0.5 * (q0 * w3 + q1 * w2 - q2 * w1)
-    rates[..., 8] = (j2 - j3) / j1 * w2 * w3
-    rates[..., 9] = (j3 - j1) / j2 * w3 * w1
-    rates[..., 10] = (j1 - j2) / j3 * w1 * w2
-    return rates
+def derivative(q: Array, rate: Array, ratio: Array) -> tuple[Array, Array]:
+    """Return the time derivatives of ``q_ib`` (4, ...) and of the rate (3, ...), per second.
+
+    Components come first. ``ratio`` (3, ...) is ``(J2 - J3) / J1`` and its cyclic companions, all
+    that the motion shows of the moments (Eqs 29 and 31, corrected).
+    """
+    q0, q1, q2, q3 = q
+    w1, w2, w3 = rate
+    q_dot, acceleration = np.empty_like(q), np.empty_like(rate)
+    q_dot[0] = -(q1 * w1 + q2 * w2 + q3 * w3)
+    q_dot[1] = q0 * w1 + q2 * w3 - q3 * w2
+    q_dot[2] = q0 * w2 + q3 * w1 - q1 * w3
+    q_dot[3] = q0 * w3 + q1 * w2 - q2 * w1
+    acceleration[0], acceleration[1], acceleration[2] = w2 * w3, w3 * w1, w1 * w2
+    q_dot *= 0.5
+    acceleration *= ratio
+    return q_dot, acceleration
 
 
-def euler_step(state: Array, step: float) -> Array:
-    """Return the states after one explicit Euler step of ``step`` seconds, as printed."""
-    return state + step * derivative(state)
+def euler_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array, Array]:
+    """Return ``q`` and rate after one explicit Euler step of ``step`` seconds, as printed."""
+    q_dot, acceleration = derivative(q, rate, ratio)
+    return q + step * q_dot, rate + step * acceleration
 
 
-def rk4_step(state: Array, step: float) -> Array:
-    """Return the states after one classical Runge-Kutta step of ``step`` seconds."""
-    k1 = derivative(state)
-    k2 = derivative(state + 0.5 * step * k1)
-    k3 = derivative(state + 0.5 * step * k2)
-    k4 = derivative(state + step * k3)
-    return state + step / 6 * (k1 + 2 * (k2 + k3) + k4)
+def rk4_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array, Array]:
+    """Return ``q`` and rate after one classical Runge-Kutta step of ``step`` seconds."""
+    half = 0.5 * step
+    q1, w1 = derivative(q, rate, ratio)
+    q2, w2 = derivative(q + half * q1, rate + half * w1, ratio)
+    q3, w3 = derivative(q + half * q2, rate + half * w2, ratio)
+    q4, w4 = derivative(q + step * q3, rate + step * w3, ratio)
+    sixth = step / 6
+    return q + sixth * (q1 + 2 * (q2 + q3) + q4), rate + sixth * (w1 + 2 * (w2 + w3) + w4)
+
+
+Integrator = Callable[[Array, Array, Array, float], tuple[Array, Array]]
+
+
+def process(state: Array, step: float, integrator: Integrator) -> Array:
+    """Return the states (..., 14) after ``step`` seconds; offset and moments do not change."""
+    following = np.ascontiguousarray(np.moveaxis(state, -1, 0))
+    moments = following[MOMENTS]
+    j1, j2, j3 = np.copysign(np.maximum(np.abs(moments), LEAST_MOMENT), moments)
+    ratio = np.stack([(j2 - j3) / j1, (j3 - j1) / j2, (j1 - j2) / j3])
+    following[Q_IB], following[RATE] = integrator(following[Q_IB], following[RATE], ratio, step)
+    return np.moveaxis(following, 0, -1)
 
 
 def measured_attitude(state: Array) -> Array:
@@ -88,7 +107,7 @@ def sign_free_innovation(measured: Array, predicted: Array) -> Array:
     return np.where(product < 0, -measured, measured) - predicted
 
 
-_STEPS: dict[str, Callable[[Array, float], Array]] = {"euler": euler_step, "rk4": rk4_step}
+_INTEGRATORS: dict[str, Integrator] = {"euler": euler_step, "rk4": rk4_step}
 
 
 class Variances(Keys):
@@ -120,9 +139,9 @@ class TumblingAttitude(ProblemPart):
 
     def model(self, clock: Clock) -> Model:
         """Return process and measurement of one clock step."""
-        step = _STEPS[self.integrator]
+        integrator = _INTEGRATORS[self.integrator]
         return Model(
-            process=lambda state, _: step(state, clock.step),
+            process=lambda state, _: process(state, clock.step, integrator),
             measurement=lambda state, _: measured_attitude(state),
             process_noise=self.process_noise.diagonal(),
             measurement_noise=self.measurement_noise * np.eye(4),

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from debrisest.filters.model import FilterStatus, Model
+from debrisest.filters.history import FilterStatus
+from debrisest.filters.model import Model
 from debrisest.filters.unscented import UnscentedParameters, unscented
 
 RUNS, EPOCHS, BAD = 5, 12, 2

@@ -1,0 +1,59 @@
+"""Mean and largest rate error of all runs over time (Biondi et al. 2017, Fig. 11)."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from debrisest.arrays import Array, Data
+from debrisest.plots.style import (
+    AXIS_COLOURS,
+    GREY,
+    WIDTH,
+    heading,
+    legend_below,
+    styled,
+    time_axis,
+    unit,
+)
+from debrisest.vocabulary import table_scale
+
+QUANTITIES = ("rate_1", "rate_2", "rate_3")
+
+
+@styled
+def error_over_time(data: Data, context: str) -> Figure:
+    """Draw mean and maximum over the runs of the absolute errors (run, time), one axis each."""
+    times = data["time_s"]
+    figure = Figure(figsize=(WIDTH, 5.6))
+    axes = list(figure.subplots(3, sharex=True, sharey=True))
+    for axis, name, colour in zip(axes, QUANTITIES, AXIS_COLOURS):
+        _component(axis, times, np.abs(data[name]) * table_scale(name), colour)
+        axis.set_ylabel(f"axis {name[-1]} [{unit(name)}]")
+    time_axis(axes, times[0], times[-1])
+    heading(figure, axes[0], "Rate error about the principal axes", context)
+    legend_below(figure, _handles())
+    return figure
+
+
+def _component(axis: Axes, times: Array, error: Array, colour: str) -> None:
+    known = np.isfinite(error)
+    mean = _positive(np.sum(error, axis=0, where=known), np.sum(known, axis=0))
+    largest = _positive(np.max(error, axis=0, where=known, initial=0.0))
+    axis.set_yscale("log")
+    axis.fill_between(times, mean, largest, color=colour, alpha=0.15, linewidth=0)
+    axis.plot(times, largest, color=colour, linewidth=0.8, alpha=0.75)
+    axis.plot(times, mean, color=colour, linewidth=1.6)
+
+
+def _positive(total: Array, count: Array | int = 1) -> Array:
+    """Return ``total / count`` where that is positive, else NaN: all that a log axis can show."""
+    shown = total > 0
+    return np.divide(total, count, out=np.full_like(total, np.nan), where=shown)
+
+
+def _handles() -> list[Line2D]:
+    return [
+        Line2D([], [], color=GREY, linewidth=1.6, label="mean of |error|"),
+        Line2D([], [], color=GREY, linewidth=0.8, label="maximum of |error|"),
+    ]

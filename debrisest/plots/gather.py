@@ -1,0 +1,92 @@
+"""The data of figures: what is up to date in the store, of one run or of all runs."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest import store
+from debrisest.arrays import Array, Data
+from debrisest.plan import Step
+from debrisest.scenario.load import LoadedScenario
+from debrisest.stages.isolate import has_runs
+from debrisest.tables.results import Result
+
+Chunks = dict[int, list[Step]]
+"""The steps of one case and estimator by their first run, upstream first."""
+
+
+class Source(NamedTuple):
+    """What a figure is drawn from, in names, in words and in data."""
+
+    names: tuple[str, ...]
+    """What tells the figure's file from others of its kind: case and estimator, or estimator."""
+    context: str
+    data: Data
+
+
+def single_runs(scenario: LoadedScenario, steps: Iterable[Step]) -> Iterator[Source]:
+    """Return the first run that did not fail, of every case and estimator that has one."""
+    for (case, estimator), chunks in _chunks(list(steps)).items():
+        found = _first_good_run(chunks)
+        if found is not None:
+            run, data = found
+            context = f"{scenario.name}, case {case}, {estimator}, run {run}"
+            yield Source((case, estimator), context, data)
+
+
+def all_runs(
+    scenario: LoadedScenario, results: Mapping[tuple[str, str], Result]
+) -> Iterator[Source]:
+    """Return, for every estimator, the errors of the runs of all cases that did not diverge.
+
+    Where the scenario's tables have means, the cases are those of the means.
+    """
+    averaged = {case for cases in scenario.any.tables.means.values() for case in cases}
+    for estimator in dict.fromkeys(estimator for _, estimator in results):
+        mine = {case: result for (case, of), result in results.items() if of == estimator}
+        chosen = [r for case, r in mine.items() if case in averaged] or list(mine.values())
+        yield _pooled(scenario, estimator, chosen)
+
+
+def _chunks(steps: Sequence[Step]) -> dict[tuple[str, str], Chunks]:
+    found: dict[tuple[str, str], Chunks] = {}
+    for step in steps:
+        if step.estimator:
+            chunk = found.setdefault((step.case.name, step.estimator), {})
+            chunk.setdefault(step.first_run, list(step.upstream[:1])).append(step)
+    return found
+
+
+def _first_good_run(chunks: Chunks) -> tuple[int, Data] | None:
+    """Return the number and the datasets, without their run axis, of the first good run."""
+    for first in sorted(chunks):
+        parts = [store.read(s.path, s.runs) for s in chunks[first] if not s.reason]
+        if not parts:
+            continue
+        failed = np.any([part["failure"] != "" for part in parts], axis=0)
+        if not failed.all():
+            index = int(np.argmin(failed))
+            return first + index, _one_run(parts, index)
+    return None
+
+
+def _one_run(parts: Iterable[Data], index: int) -> Data:
+    return {
+        name: value[index] if has_runs(name) else value
+        for part in parts
+        for name, value in part.items()
+    }
+
+
+def _pooled(scenario: LoadedScenario, estimator: str, results: Sequence[Result]) -> Source:
+    """Return the errors (run, time) of all results on all their epochs, NaN where one has none."""
+    times = np.unique(np.concatenate([result.times for result in results]))
+    names = {name for result in results for name, e in result.errors.items() if e.ndim == 2}
+    kept = [_kept(scenario, result) for result in results]
+    data: Data = {"time_s": times}
+    for name in sorted(names):
+        parts = [_on(times, result, name)[good] for result, good in zip(results, kept)]
+        data[name] = np.concatenate(parts)
+    ...
+    return Source((estimator,), "", data)

@@ -1,0 +1,82 @@
+"""The recovered attitude signal over the samples it comes from (Biondi et al. 2017, Figs. 8, 9)."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from debrisest.arrays import Array, Data
+from debrisest.assessment.attitude import true_feature_attitude
+from debrisest.plots.style import (
+    BLUE,
+    INK,
+    SHADE,
+    VERMILION,
+    WIDTH,
+    heading,
+    legend_below,
+    shade_gaps,
+    styled,
+    time_axis,
+)
+from debrisest.recovery.pieces import continuous
+
+LAST_S = 300.0
+"""Length of the close-up of the signal's end, seconds."""
+
+
+@styled
+def recovered_quaternion(data: Data, context: str) -> Figure:
+    """Draw all of q0 on top, and all components of ``q_if`` (time, 4) over the last 300 s."""
+    times = data["time_s"]
+    figure = Figure(figsize=(WIDTH, 7.4))
+    whole, *close = figure.subplots(5, gridspec_kw={"height_ratios": (1.25, 1, 1, 1, 1)})
+    samples, truth = _signed_samples(data), _truth(data)
+    for axis, component in ((whole, 0), *zip(close, range(4))):
+        _component(axis, component, data, samples, truth)
+    time_axis([whole], times[0], times[-1])
+    start = max(times[0], times[-1] - LAST_S)
+    time_axis(close, start, times[-1])
+    heading(figure, whole, "Recovered quaternion", context)
+    close[0].set_title(f"last {times[-1] - start:.0f} s, all components", pad=4)
+    legend_below(figure, _handles(truth is not None))
+    return figure
+
+
+def _component(
+    axis: Axes, component: int, data: Data, samples: Array, truth: Array | None
+) -> None:
+    times = data["time_s"]
+    shade_gaps(axis, times, ~np.isfinite(data["piece"]))
+    axis.plot(times, samples[:, component], "x", color=BLUE, markersize=3, mew=0.6, rasterized=True)
+    axis.plot(times, data["q_if"][:, component], color=VERMILION)
+    if truth is not None:
+        axis.plot(times, truth[:, component], color=INK, linewidth=0.7, dashes=(4, 2.5))
+    axis.set_ylim(-1.12, 1.12)
+    axis.set_ylabel(f"$q_{component}$")
+
+
+def _signed_samples(data: Data) -> Array:
+    """Return the raw samples (time, 4) with the sign that the search gave to their piece."""
+    piece, sign = data["piece"], data["sign"]
+    index = np.where(np.isfinite(piece), piece, len(sign)).astype(np.int64)
+    return np.asarray(data["raw_q_if"] * np.append(sign, np.nan)[index, None])
+
+
+def _truth(data: Data) -> Array | None:
+    """Return the continuous truth (time, 4), as a whole with the sign of the recovered signal."""
+    if "true_q_ib" not in data or "true_point_b" not in data:
+        return None
+    one_run = {name: data[name][None] for name in ("true_q_ib", "true_point_b")}
+    true = true_feature_attitude(one_run)[0]
+    true = continuous(true, np.zeros(len(true), dtype=np.int64))
+    return true if np.nansum(true * data["q_if"]) >= 0 else -true
+
+
+def _handles(with_truth: bool) -> list[Line2D | Patch]:
+    cross = Line2D([], [], linestyle="", marker="x", markersize=4.5, color=BLUE)
+    cross.set_label("raw samples, signs from the search")
+    line = Line2D([], [], color=VERMILION, label="recovered")
+    truth = Line2D([], [], color=INK, linewidth=0.7, dashes=(4, 2.5), label="truth")
+    return [cross, line, *([truth] if with_truth else []), Patch(facecolor=SHADE, label="gap")]
