@@ -9,12 +9,12 @@ from debrisest.parts.filters import Unscented
 from debrisest.parts.motions import GravityGradient, TorqueFree
 from debrisest.parts.observers import Drift, Hold
 from debrisest.parts.orbits import KeplerOrbit
-from debrisest.parts.part import Part
 from debrisest.parts.recoveries import BasisPursuit
 from debrisest.parts.sensors import FeaturePoints
 from debrisest.parts.starts import FirstSamples
 from debrisest.parts.targets import RigidPoints
 from debrisest.problems.tumbling_attitude import TumblingAttitude
+from debrisest.roles import Part
 
 
 def kind_of(part: type[Part]) -> str:

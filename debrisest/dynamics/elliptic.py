@@ -19,30 +19,27 @@ def quarter_period(complement: Array) -> Array:
 def elliptic(argument: Array, complement: Array) -> tuple[Array, Array, Array]:
     """``sn, cn, dn`` of real arguments, for ``0 < 1 - m <= 1``.
 
-    Amplitude by the descending arithmetic-geometric mean (DLMF 22.20(ii)), its arc sine written as
-    an arc tangent, which stays accurate at ``m = 1``.
+    Descending Landen transformations (DLMF 22.7(i)) down to the circular functions. ``1 - k1 sn^2``
+    is written as ``(1 - k1) + k1 cn^2``, so that small values of ``cn`` and ``dn`` keep all digits.
     """
-    period = 4.0 * quarter_period(complement)
-    argument = argument - period * np.round(argument / period)
-    amplitude = _amplitude(argument, complement)
-    sn, cn = np.sin(amplitude), np.cos(amplitude)
-    return sn, cn, np.sqrt(cn * cn + complement * sn * sn)
+    turns = argument / (4.0 * quarter_period(complement))
+    angle = 2.0 * np.pi * (turns - np.round(turns))
+    sn, cn, dn = np.sin(angle), np.cos(angle), np.ones_like(angle)
+    for modulus, rest in reversed(_landen_moduli(complement)):
+        divisor = 1.0 + modulus * sn * sn
+        sn, cn, dn = (
+            (1.0 + modulus) * sn / divisor,
+            cn * dn / divisor,
+            (rest + modulus * cn * cn) / divisor,
+        )
+    return sn, cn, dn
 
 
-def _amplitude(argument: Array, complement: Array) -> Array:
-    means = _mean_sequence(complement)
-    phase = np.ldexp(means[-1][0] * argument, len(means) - 1)
-    for mean, geometric, difference in means[:0:-1]:
-        sine, cosine = np.sin(phase), np.cos(phase)
-        adjacent = np.sqrt((mean * cosine) ** 2 + (geometric * sine) ** 2)
-        phase = 0.5 * (phase + np.arctan2(difference * sine, adjacent))
-    return phase
-
-
-def _mean_sequence(complement: Array) -> list[tuple[Array, Array, Array]]:
-    """``(a, b, c)`` of the arithmetic-geometric mean of 1 and ``k'``, until ``c`` vanishes."""
-    sequence = [(np.ones_like(complement), np.sqrt(complement), np.sqrt(1.0 - complement))]
-    while np.any(sequence[-1][2] > 1e-9 * sequence[-1][0]):
-        a, b, _ = sequence[-1]
-        sequence.append((0.5 * (a + b), np.sqrt(a * b), 0.5 * (a - b)))
-    return sequence
+def _landen_moduli(complement: Array) -> list[tuple[Array, Array]]:
+    """Moduli ``k1`` of the successive transformations, with ``1 - k1``, until they vanish."""
+    moduli: list[tuple[Array, Array]] = []
+    k_prime = np.sqrt(complement)
+    while not moduli or np.any(moduli[-1][0] > 1e-9):
+        moduli.append(((1.0 - k_prime) / (1.0 + k_prime), 2.0 * k_prime / (1.0 + k_prime)))
+        k_prime = 2.0 * np.sqrt(k_prime) / (1.0 + k_prime)
+    return moduli

@@ -6,7 +6,7 @@ from debrisest.arrays import Array
 from debrisest.filters.history import History
 from debrisest.filters.model import Model
 from debrisest.filters.unscented import UnscentedParameters, unscented
-from debrisest.parts.part import FilterPart, Positive
+from debrisest.roles import FilterPart, Positive
 
 
 class Unscented(FilterPart):

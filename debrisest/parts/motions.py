@@ -8,13 +8,11 @@ from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws
-
-# GG
-tumble = None
+from debrisest.dynamics.gravity_gradient import tumble
 from debrisest.dynamics.inertia import principal_axes
 from debrisest.dynamics.kepler import propagate
 from debrisest.dynamics.torque_free import torque_free
-from debrisest.parts.part import SimulationPart, UnitQuaternion, Vector3
+from debrisest.roles import SimulationPart, UnitQuaternion, Vector3
 
 
 class TorqueFree(SimulationPart):

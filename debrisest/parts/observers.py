@@ -8,7 +8,7 @@ from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import relative_motion
-from debrisest.parts.part import SimulationPart, Vector3
+from debrisest.roles import SimulationPart, Vector3
 
 _ZERO = [0.0, 0.0, 0.0]
 

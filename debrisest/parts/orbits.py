@@ -9,7 +9,7 @@ from debrisest.arrays import Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import kepler
-from debrisest.parts.part import Positive, SimulationPart
+from debrisest.roles import Positive, SimulationPart
 
 
 class KeplerOrbit(SimulationPart):

@@ -12,12 +12,12 @@ from debrisest.assessment.signs import signs_right
 from debrisest.attitude import quaternion
 from debrisest.attitude.points import triad, wahba
 from debrisest.clock import Clock
-from debrisest.parts.part import Keys, NonNegative, Positive, RecoveryPart
 from debrisest.recovery.basis_pursuit import BasisPursuit as Solution
 from debrisest.recovery.basis_pursuit import RecoveryStatus, basis_pursuit
 from debrisest.recovery.fourier import dictionary_length
 from debrisest.recovery.pieces import continuous, pieces
 from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
+from debrisest.roles import Keys, NonNegative, Positive, RecoveryPart
 
 _ATTITUDES: dict[str, Callable[[Array, Array], Array]] = {"triad": triad, "wahba": wahba}
 Count = Annotated[int, Field(ge=1)]
@@ -55,8 +55,9 @@ class BasisPursuit(RecoveryPart):
         2.0, description="atoms per sample; 1 is the plain transform"
     )
     penalty: Positive = Field(description="lambda of the lasso")
-    splitting: Positive = Field(0.3, description="mu of the augmented Lagrangian, over the atoms")
-    iterations: Count = 150
+    splitting: Positive = Field(0.1, description="mu of the augmented Lagrangian, over the atoms")
+    iterations: Count = 300
+    relaxation: Annotated[float, Field(gt=0, lt=2)] = 1.6
     tolerance: NonNegative = 1e-3
     signs: SignSearch = SignSearch()
 
@@ -120,6 +121,7 @@ class BasisPursuit(RecoveryPart):
             self.penalty,
             self.splitting,
             self.iterations,
+            relaxation=self.relaxation,
             tolerance=self.tolerance,
         )
 

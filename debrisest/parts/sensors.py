@@ -8,7 +8,7 @@ from debrisest.arrays import Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
-from debrisest.parts.part import NonNegative, SimulationPart
+from debrisest.roles import NonNegative, SimulationPart
 from debrisest.target.visibility import back_face_visible
 
 

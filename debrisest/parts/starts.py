@@ -8,8 +8,8 @@ from pydantic import Field
 from debrisest.arrays import Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
-from debrisest.parts.part import StartPart
 from debrisest.problems.tumbling_attitude import Variances
+from debrisest.roles import StartPart
 
 
 class FirstSamples(StartPart):

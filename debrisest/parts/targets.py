@@ -9,7 +9,7 @@ from debrisest.arrays import Array, Data
 from debrisest.attitude.points import features_frame
 from debrisest.clock import Clock
 from debrisest.draws import Draws
-from debrisest.parts.part import Keys, SimulationPart, Vector3
+from debrisest.roles import Keys, SimulationPart, Vector3
 
 
 def _possible_inertia(rows: list[float] | list[list[float]]) -> list[float] | list[list[float]]:

@@ -29,9 +29,9 @@ def error_over_time(data: Data, context: str) -> Figure:
     axes = list(figure.subplots(3, sharex=True, sharey=True))
     for axis, name, colour in zip(axes, QUANTITIES, AXIS_COLOURS):
         _component(axis, times, np.abs(data[name]) * table_scale(name), colour)
-        axis.set_ylabel(f"axis {name[-1]} [{unit(name)}]")
-    time_axis(axes, times[0], times[-1])
-    heading(figure, axes[0], "Rate error about the principal axes", context)
+        axis.set_ylabel(f"|error {name[-1]}| [{unit(name)}]")
+    time_axis(axes, times)
+    heading(axes[0], "Rate error about the principal axes", context)
     legend_below(figure, _handles())
     return figure
 
@@ -41,7 +41,8 @@ def _component(axis: Axes, times: Array, error: Array, colour: str) -> None:
     mean = _positive(np.sum(error, axis=0, where=known), np.sum(known, axis=0))
     largest = _positive(np.max(error, axis=0, where=known, initial=0.0))
     axis.set_yscale("log")
-    axis.fill_between(times, mean, largest, color=colour, alpha=0.15, linewidth=0)
+    axis.yaxis.set_major_formatter("{x:g}")
+    axis.fill_between(times, mean, largest, color=colour, alpha=0.15, linewidth=0, rasterized=True)
     axis.plot(times, largest, color=colour, linewidth=0.8, alpha=0.75)
     axis.plot(times, mean, color=colour, linewidth=1.6)
 
@@ -54,6 +55,6 @@ def _positive(total: Array, count: Array | int = 1) -> Array:
 
 def _handles() -> list[Line2D]:
     return [
-        Line2D([], [], color=GREY, linewidth=1.6, label="mean of |error|"),
-        Line2D([], [], color=GREY, linewidth=0.8, label="maximum of |error|"),
+        Line2D([], [], color=GREY, linewidth=1.6, label="mean over the runs"),
+        Line2D([], [], color=GREY, linewidth=0.8, label="largest of all runs"),
     ]

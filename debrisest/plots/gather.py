@@ -1,15 +1,16 @@
 """The data of figures: what is up to date in the store, of one run or of all runs."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from debrisest import store
-from debrisest.arrays import Array, Data
+from debrisest.arrays import Array, BoolArray, Data
 from debrisest.plan import Step
 from debrisest.scenario.load import LoadedScenario
 from debrisest.stages.isolate import has_runs
+from debrisest.tables.cells import Results
 from debrisest.tables.results import Result
 
 Chunks = dict[int, list[Step]]
@@ -31,12 +32,12 @@ def single_runs(scenario: LoadedScenario, steps: Iterable[Step]) -> Iterator[Sou
         found = _first_good_run(chunks)
         if found is not None:
             run, data = found
-            context = f"{scenario.name}, case {case}, {estimator}, run {run}"
+            context = f"{scenario.name}, case {case}, estimator {estimator}, run {run}"
             yield Source((case, estimator), context, data)
 
 
 def all_runs(
-    scenario: LoadedScenario, results: Mapping[tuple[str, str], Result]
+    scenario: LoadedScenario, results: Results, quantities: Sequence[str]
 ) -> Iterator[Source]:
     """Return, for every estimator, the errors of the runs of all cases that did not diverge.
 
@@ -44,9 +45,15 @@ def all_runs(
     """
     averaged = {case for cases in scenario.any.tables.means.values() for case in cases}
     for estimator in dict.fromkeys(estimator for _, estimator in results):
-        mine = {case: result for (case, of), result in results.items() if of == estimator}
-        chosen = [r for case, r in mine.items() if case in averaged] or list(mine.values())
-        yield _pooled(scenario, estimator, chosen)
+        mine = {
+            case: result
+            for (case, of), result in results.items()
+            if of == estimator and set(quantities) <= set(result.errors)
+        }
+        chosen = [result for case, result in mine.items() if case in averaged]
+        source = _pooled(scenario, estimator, chosen or list(mine.values()), quantities)
+        if source is not None:
+            yield source
 
 
 def _chunks(steps: Sequence[Step]) -> dict[tuple[str, str], Chunks]:
@@ -79,14 +86,36 @@ def _one_run(parts: Iterable[Data], index: int) -> Data:
     }
 
 
-def _pooled(scenario: LoadedScenario, estimator: str, results: Sequence[Result]) -> Source:
-    """Return the errors (run, time) of all results on all their epochs, NaN where one has none."""
+def _pooled(
+    scenario: LoadedScenario, estimator: str, results: Sequence[Result], quantities: Sequence[str]
+) -> Source | None:
+    """Return the errors (run, time) of all good runs, on the epochs of all cases."""
+    kept = [_kept(scenario, result, quantities) for result in results]
+    runs = sum(result.runs for result in results)
+    good = sum(int(mine.sum()) for mine in kept)
+    if not good:
+        return None
     times = np.unique(np.concatenate([result.times for result in results]))
-    names = {name for result in results for name, e in result.errors.items() if e.ndim == 2}
-    kept = [_kept(scenario, result) for result in results]
     data: Data = {"time_s": times}
-    for name in sorted(names):
-        parts = [_on(times, result, name)[good] for result, good in zip(results, kept)]
+    for name in quantities:
+        parts = [_on(times, r.times, r.errors[name][mine]) for r, mine in zip(results, kept)]
         data[name] = np.concatenate(parts)
-    ...
-    return Source((estimator,), "", data)
+    context = (
+        f"{scenario.name}, estimator {estimator}: {good} runs of {len(results)} cases; "
+        f"left out as diverged or failed: {runs - good}"
+    )
+    return Source((estimator,), context, data)
+
+
+def _kept(scenario: LoadedScenario, result: Result, quantities: Sequence[str]) -> BoolArray:
+    """Return which runs (run,) are finite to the end and break no rule of divergence."""
+    finite = [np.isfinite(result.errors[name][:, -1]) for name in quantities]
+    lost = result.diverged(scenario.any.tables.diverged)
+    return np.asarray(result.good & ~lost & np.all(finite, axis=0))
+
+
+def _on(times: Array, own: Array, error: Array) -> Array:
+    """Return an error (run, own time) on more epochs, NaN where it has none."""
+    spread = np.full((len(error), len(times)), np.nan)
+    spread[:, np.searchsorted(times, own)] = error
+    return spread

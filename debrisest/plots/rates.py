@@ -11,8 +11,8 @@ from debrisest.dynamics.inertia import principal_axes
 from debrisest.plots.style import (
     AXIS_COLOURS,
     GREY,
-    INK,
     WIDTH,
+    dashed,
     heading,
     legend_below,
     styled,
@@ -29,15 +29,16 @@ def rates(data: Data, context: str) -> Figure:
     """Draw ``rate_b`` (time, 3) relabeled to true principal axes, and its error if it is known."""
     times, truth = data["time_s"], _truth(data)
     estimate, sigma = _relabeled(data)
-    ratios = (2.6, 1, 1, 1) if truth is not None else (1,)
-    figure = Figure(figsize=(WIDTH, 6.8 if truth is not None else 3.4))
+    ratios = (2.3, 1, 1, 1) if truth is not None else (1,)
+    figure = Figure(figsize=(WIDTH, 7.2 if truth is not None else 3.4))
     axes = list(figure.subplots(len(ratios), squeeze=False, height_ratios=ratios)[:, 0])
     _rates(axes[0], times, estimate, sigma, truth)
     if truth is not None:
         for index, axis in enumerate(axes[1:]):
             _error(axis, index, times, (estimate - truth)[:, index], 3 * sigma[:, index])
-    time_axis(axes, times[0], times[-1])
-    heading(figure, axes[0], "Angular rate in principal axes", context)
+    time_axis(axes, times)
+    figure.align_ylabels(axes)
+    heading(axes[0], "Angular rate in principal axes", context)
     legend_below(figure, _handles(truth is not None))
     return figure
 
@@ -59,22 +60,26 @@ def _truth(data: Data) -> Array | None:
 
 def _rates(axis: Axes, times: Array, estimate: Array, sigma: Array, truth: Array | None) -> None:
     for index, colour in zip(_AXES, AXIS_COLOURS):
-        low, high = estimate[:, index] - 3 * sigma[:, index], estimate[:, index] + 3 * sigma[:, index]
-        axis.fill_between(times, low, high, color=colour, alpha=0.2, linewidth=0)
-        axis.plot(times, estimate[:, index], color=colour)
+        low, high = (
+            estimate[:, index] - 3 * sigma[:, index],
+            estimate[:, index] + 3 * sigma[:, index],
+        )
+        axis.fill_between(times, low, high, color=colour, alpha=0.2, linewidth=0, rasterized=True)
+        axis.plot(times, estimate[:, index], color=colour, linewidth=1.6)
         if truth is not None:
-            axis.plot(times, truth[:, index], color=INK, linewidth=0.7, dashes=(4, 2.5))
+            axis.plot(times, truth[:, index], **dashed())
     axis.set_ylim(*_range(estimate if truth is None else truth))
     axis.set_ylabel(f"rate [{unit('rate')}]")
 
 
 def _error(axis: Axes, index: int, times: Array, error: Array, bound: Array) -> None:
     colour = AXIS_COLOURS[index]
-    axis.fill_between(times, -bound, bound, color=colour, alpha=0.2, linewidth=0)
+    axis.fill_between(times, -bound, bound, color=colour, alpha=0.2, linewidth=0, rasterized=True)
     axis.plot(times, error, color=colour, linewidth=0.8)
     axis.axhline(0, color=GREY, linewidth=0.5)
     settled = np.abs(np.concatenate([error[len(error) // 3 :], bound[len(bound) // 3 :]]))
     axis.set_ylim(*_range(np.concatenate([settled, -settled])))
+    axis.locator_params(axis="y", nbins=5)
     axis.set_ylabel(f"error {index + 1} [{unit('rate')}]")
 
 
@@ -93,6 +98,6 @@ def _handles(with_truth: bool) -> list[Line2D | Patch]:
         Line2D([], [], color=colour, label=f"axis {index + 1}")
         for index, colour in zip(_AXES, AXIS_COLOURS)
     ]
-    band = Patch(facecolor=GREY, alpha=0.3, linewidth=0, label="3 sigma")
-    truth = Line2D([], [], color=INK, linewidth=0.7, dashes=(4, 2.5), label="truth")
+    band = Patch(facecolor=GREY, alpha=0.3, linewidth=0, label="±3σ")
+    truth = Line2D([], [], label="truth", **dashed())
     return [*lines, band, *([truth] if with_truth else [])]

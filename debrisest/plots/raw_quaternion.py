@@ -13,6 +13,7 @@ from debrisest.plots.style import (
     WIDTH,
     heading,
     legend_below,
+    quaternion_axis,
     shade_gaps,
     styled,
     time_axis,
@@ -32,10 +33,9 @@ def raw_quaternion(data: Data, context: str) -> Figure:
         for turn, colour in enumerate(_COLOURS):
             mine = np.where(piece % 2 == turn, raw[:, component], np.nan)
             axis.plot(times, mine, ".", color=colour, markersize=2.4, mew=0, rasterized=True)
-        axis.set_ylim(-1.12, 1.12)
-        axis.set_ylabel(f"$q_{component}$")
-    time_axis(axes, times[0], times[-1])
-    heading(figure, axes[0], "Attitude of single epochs, raw quaternion", context)
+        quaternion_axis(axis, component)
+    time_axis(axes, times)
+    heading(axes[0], "Raw quaternion", context)
     legend_below(figure, _handles(int(np.isfinite(np.unique(piece)).sum())))
     return figure
 

@@ -1,5 +1,7 @@
 """The recovered attitude signal over the samples it comes from (Biondi et al. 2017, Figs. 8, 9)."""
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -9,13 +11,14 @@ from matplotlib.patches import Patch
 from debrisest.arrays import Array, Data
 from debrisest.assessment.attitude import true_feature_attitude
 from debrisest.plots.style import (
-    BLUE,
-    INK,
     SHADE,
+    SKY,
     VERMILION,
     WIDTH,
+    dashed,
     heading,
     legend_below,
+    quaternion_axis,
     shade_gaps,
     styled,
     time_axis,
@@ -26,35 +29,46 @@ LAST_S = 300.0
 """Length of the close-up of the signal's end, seconds."""
 
 
+class _Look(NamedTuple):
+    """Sizes for a signal that is seen from far or from near."""
+
+    line: float
+    samples: dict[str, Any]
+
+
+_WHOLE = _Look(0.9, {"markersize": 2.6, "mew": 0.5})
+_CLOSE = _Look(1.4, {"markersize": 4.6, "mew": 0.8})
+_CROSSES: dict[str, Any] = {"linestyle": "", "marker": "x", "color": SKY, "rasterized": True}
+
+
 @styled
 def recovered_quaternion(data: Data, context: str) -> Figure:
     """Draw all of q0 on top, and all components of ``q_if`` (time, 4) over the last 300 s."""
     times = data["time_s"]
-    figure = Figure(figsize=(WIDTH, 7.4))
-    whole, *close = figure.subplots(5, gridspec_kw={"height_ratios": (1.25, 1, 1, 1, 1)})
+    figure = Figure(figsize=(WIDTH, 7.2))
+    whole, *close = figure.subplots(5, height_ratios=(1.2, 1, 1, 1, 1))
     samples, truth = _signed_samples(data), _truth(data)
-    for axis, component in ((whole, 0), *zip(close, range(4))):
-        _component(axis, component, data, samples, truth)
-    time_axis([whole], times[0], times[-1])
-    start = max(times[0], times[-1] - LAST_S)
-    time_axis(close, start, times[-1])
-    heading(figure, whole, "Recovered quaternion", context)
-    close[0].set_title(f"last {times[-1] - start:.0f} s, all components", pad=4)
+    _component(whole, 0, data, samples, truth, _WHOLE)
+    for component, axis in enumerate(close):
+        _component(axis, component, data, samples, truth, _CLOSE)
+    time_axis([whole], times, label=False)
+    time_axis(close, times, LAST_S)
+    heading(whole, "Recovered quaternion", context)
+    close[0].set_title(f"the last {LAST_S:.0f} s", pad=4)
     legend_below(figure, _handles(truth is not None))
     return figure
 
 
 def _component(
-    axis: Axes, component: int, data: Data, samples: Array, truth: Array | None
+    axis: Axes, component: int, data: Data, samples: Array, truth: Array | None, look: _Look
 ) -> None:
     times = data["time_s"]
     shade_gaps(axis, times, ~np.isfinite(data["piece"]))
-    axis.plot(times, samples[:, component], "x", color=BLUE, markersize=3, mew=0.6, rasterized=True)
-    axis.plot(times, data["q_if"][:, component], color=VERMILION)
+    axis.plot(times, samples[:, component], **_CROSSES, **look.samples)
+    axis.plot(times, data["q_if"][:, component], color=VERMILION, linewidth=look.line)
     if truth is not None:
-        axis.plot(times, truth[:, component], color=INK, linewidth=0.7, dashes=(4, 2.5))
-    axis.set_ylim(-1.12, 1.12)
-    axis.set_ylabel(f"$q_{component}$")
+        axis.plot(times, truth[:, component], **dashed())
+    quaternion_axis(axis, component)
 
 
 def _signed_samples(data: Data) -> Array:
@@ -75,8 +89,8 @@ def _truth(data: Data) -> Array | None:
 
 
 def _handles(with_truth: bool) -> list[Line2D | Patch]:
-    cross = Line2D([], [], linestyle="", marker="x", markersize=4.5, color=BLUE)
+    cross = Line2D([], [], linestyle="", marker="x", markersize=4.5, color=SKY)
     cross.set_label("raw samples, signs from the search")
     line = Line2D([], [], color=VERMILION, label="recovered")
-    truth = Line2D([], [], color=INK, linewidth=0.7, dashes=(4, 2.5), label="truth")
+    truth = Line2D([], [], label="truth", **dashed())
     return [cross, line, *([truth] if with_truth else []), Patch(facecolor=SHADE, label="gap")]

@@ -24,7 +24,7 @@ from debrisest.clock import Clock
 from debrisest.dynamics.inertia import principal_axes
 from debrisest.filters.history import History
 from debrisest.filters.model import Model
-from debrisest.parts.part import Keys, Positive, ProblemPart, Window
+from debrisest.roles import Keys, Positive, ProblemPart, Window
 
 Q_IB, Q_BF, RATE, MOMENTS = slice(0, 4), slice(4, 8), slice(8, 11), slice(11, 14)
 ERROR_NAMES = tuple(

@@ -26,8 +26,9 @@ def continuous(q: Array, piece: IntArray) -> Array:
     flips the vector part alone, which would be another attitude. NaN stays NaN.
     """
     products = np.sum(q[..., 1:, :] * q[..., :-1, :], axis=-1)
-    turns = np.where((products < 0) & (piece[..., 1:] == piece[..., :-1]), -1.0, 1.0)
-    sign = np.concatenate([np.ones_like(turns[..., :1]), np.cumprod(turns, axis=-1)], axis=-1)
+    turns = np.ones(piece.shape)
+    turns[..., 1:][(products < 0) & (piece[..., 1:] == piece[..., :-1])] = -1.0
+    sign = np.cumprod(turns, axis=-1)
     return q * (sign * _at_start(sign, piece))[..., None]
 
 

@@ -8,9 +8,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, create_model, model_validator
 
+from debrisest.assessment.statistics import STATISTICS
 from debrisest.catalog import CATALOG, kind_of
 from debrisest.clock import Clock
-from debrisest.parts.part import (
+from debrisest.roles import (
     FilterPart,
     Keys,
     Part,
@@ -21,7 +22,6 @@ from debrisest.parts.part import (
     StartPart,
     Window,
 )
-from debrisest.tables.statistics import STATISTICS
 from debrisest.vocabulary import VOCABULARY
 
 _WINDOW = re.compile(r"^(\d+(?:\.\d+)?)-(\d+(?:\.\d+)?) s$")

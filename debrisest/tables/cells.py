@@ -8,11 +8,11 @@ import numpy as np
 import pandas as pd
 
 from debrisest.arrays import Array, BoolArray
+from debrisest.assessment.statistics import bootstrap
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.schema import Table, Tables
 from debrisest.tables.published import CellKey, Published, load_published
 from debrisest.tables.results import Result
-from debrisest.tables.statistics import bootstrap
 from debrisest.tables.verdict import interval_meets, verdict
 from debrisest.vocabulary import VOCABULARY
 

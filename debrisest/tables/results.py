@@ -7,9 +7,9 @@ import numpy as np
 
 from debrisest import store
 from debrisest.arrays import Array, BoolArray, Data
+from debrisest.assessment.statistics import per_run, window_mask
 from debrisest.plan import Step
 from debrisest.scenario.schema import Divergence, window_of
-from debrisest.tables.statistics import per_run, window_mask
 from debrisest.vocabulary import table_scale
 
 

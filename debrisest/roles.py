@@ -1,4 +1,4 @@
-"""The base of everything that a scenario can name, and what each role must be able to do."""
+"""What a scenario can name: the base of every part, and what each role must be able to do."""
 
 from abc import ABC, abstractmethod
 from typing import Annotated, Any, ClassVar

@@ -1,0 +1,74 @@
+"""The figures there are, and how all that a scenario's results allow are written.
+
+A new figure is a file with a function from data to a figure, and a line in ``FIGURES``.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from matplotlib.figure import Figure
+
+from debrisest.arrays import Data
+from debrisest.errors import UserError
+from debrisest.plan import Selection, plan
+from debrisest.plots import error_over_time, rates, raw_quaternion, recovered_quaternion
+from debrisest.plots.files import write
+from debrisest.plots.gather import Source, all_runs, single_runs
+from debrisest.scenario.load import LoadedScenario
+from debrisest.tables.results import load_results
+
+
+class Kind(NamedTuple):
+    """A figure: how it is drawn, from which datasets, and whether of one run or of all runs.
+
+    What it draws of further datasets, such as a truth, is up to the figure.
+    """
+
+    draw: Callable[[Data, str], Figure]
+    needs: tuple[str, ...]
+    of_all_runs: bool = False
+
+
+FIGURES: dict[str, Kind] = {
+    "raw_quaternion": Kind(raw_quaternion.raw_quaternion, ("raw_q_if", "piece")),
+    "recovered_quaternion": Kind(
+        recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
+    ),
+    "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma")),
+    "error_over_time": Kind(
+        error_over_time.error_over_time, error_over_time.QUANTITIES, of_all_runs=True
+    ),
+}
+
+
+def draw_all(scenario: LoadedScenario, out: Path, selection: Selection) -> Iterator[Path]:
+    """Draw what the results that are up to date allow; yield each file once it is written."""
+    folder = out / scenario.name / "plots"
+    drawn = False
+    for name, source in _sources(scenario, out, selection):
+        figure = FIGURES[name].draw(source.data, source.context)
+        for path in write(figure, folder, "-".join((name, *source.names))):
+            drawn = True
+            yield path
+    if not drawn:
+        raise UserError(
+            f"{scenario.name}: no results that are up to date to draw; "
+            f"run: debrisest sweep {scenario.path}"
+        )
+
+
+def _sources(
+    scenario: LoadedScenario, out: Path, selection: Selection
+) -> Iterator[tuple[str, Source]]:
+    """Return every figure that can be drawn, with its data."""
+    steps = plan(scenario, out, replace(selection, force=False, last_stage="assess"))
+    for source in single_runs(scenario, steps):
+        for name, kind in FIGURES.items():
+            if not kind.of_all_runs and set(kind.needs) <= set(source.data):
+                yield name, source
+    results = load_results(steps)
+    for name, kind in FIGURES.items():
+        if kind.of_all_runs:
+            yield from ((name, source) for source in all_runs(scenario, results, kind.needs))
