@@ -215,17 +215,18 @@ def _show_tables(
     check: bool,
 ) -> bool:
     """Write and print all tables; return whether a verdict was not the expected one."""
-    from debrisest.sweep import tabulate, write_tables
+    from debrisest.sweep import chosen, tabulate, write_tables
     from debrisest.tables.cells import unexpected
     from debrisest.tables.render import render
 
     wrong: list[str] = []
     for scenario in scenarios:
-        rows = _told(partial(tabulate, scenario, out, selection))
+        rows = _told(partial(tabulate, scenario, out, selection.runs))
         if rows.empty:
             print(f"{scenario.name}: no results that are up to date; run sweep", file=sys.stderr)
             continue
         write_tables(scenario, out, rows)
+        rows = chosen(rows, selection, scenario.any.tables.means)
         print(render(scenario, rows, form), end="")
         wrong += _told(partial(unexpected, scenario, rows))
     if check:

@@ -1,7 +1,7 @@
 """Bring scenarios up to date: plan, run what has a reason to run, tell what happened."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
@@ -67,10 +67,18 @@ def _failures(steps: list[Step]) -> dict[str, str]:
     return failures
 
 
-def tabulate(scenario: LoadedScenario, out: Path, selection: Selection) -> pd.DataFrame:
-    """Return the cells of all results that are up to date."""
-    steps = plan(scenario, out, replace(selection, force=False, last_stage="assess"))
-    return cells(scenario, load_results(steps))
+def tabulate(scenario: LoadedScenario, out: Path, runs: int | None) -> pd.DataFrame:
+    """Return the cells of all results that are up to date, whatever was asked for last."""
+    return cells(scenario, load_results(plan(scenario, out, Selection(runs))))
+
+
+def chosen(rows: pd.DataFrame, selection: Selection, means: Iterable[str]) -> pd.DataFrame:
+    """Return the cells that a selection asks for; means go with a selection of all cases."""
+    if selection.estimators:
+        rows = rows[rows["estimator"].isin(selection.estimators)]
+    if selection.cases:
+        rows = rows[rows["case"].isin(selection.cases) & ~rows["case"].isin(list(means))]
+    return rows
 
 
 def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> None:

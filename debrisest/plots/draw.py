@@ -64,11 +64,11 @@ def _sources(
 ) -> Iterator[tuple[str, Source]]:
     """Return every figure that can be drawn, with its data."""
     steps = plan(scenario, out, replace(selection, force=False, last_stage="assess"))
-    for source in single_runs(scenario, steps):
+    results = load_results(steps)
+    for source in single_runs(scenario, steps, results):
         for name, kind in FIGURES.items():
             if not kind.of_all_runs and set(kind.needs) <= set(source.data):
                 yield name, source
-    results = load_results(steps)
     for name, kind in FIGURES.items():
         if kind.of_all_runs:
             yield from ((name, source) for source in all_runs(scenario, results, kind.needs))

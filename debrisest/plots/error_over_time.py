@@ -42,7 +42,7 @@ def _component(axis: Axes, times: Array, error: Array, colour: str) -> None:
     largest = _positive(np.max(error, axis=0, where=known, initial=0.0))
     axis.set_yscale("log")
     axis.yaxis.set_major_formatter("{x:g}")
-    axis.fill_between(times, mean, largest, color=colour, alpha=0.15, linewidth=0, rasterized=True)
+    axis.fill_between(times, mean, largest, color=colour, alpha=0.15, linewidth=0)
     axis.plot(times, largest, color=colour, linewidth=0.8, alpha=0.75)
     axis.plot(times, mean, color=colour, linewidth=1.6)
 

@@ -26,13 +26,18 @@ class Source(NamedTuple):
     data: Data
 
 
-def single_runs(scenario: LoadedScenario, steps: Iterable[Step]) -> Iterator[Source]:
+def single_runs(
+    scenario: LoadedScenario, steps: Iterable[Step], results: Results
+) -> Iterator[Source]:
     """Return the first run that did not fail, of every case and estimator that has one."""
     for (case, estimator), chunks in _chunks(list(steps)).items():
         found = _first_good_run(chunks)
         if found is not None:
             run, data = found
             context = f"{scenario.name}, case {case}, estimator {estimator}, run {run}"
+            result = results.get((case, estimator))
+            if result is not None and result.diverged(scenario.any.tables.diverged)[run]:
+                context += " (its filter diverged)"
             yield Source((case, estimator), context, data)
 
 

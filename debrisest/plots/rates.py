@@ -64,7 +64,7 @@ def _rates(axis: Axes, times: Array, estimate: Array, sigma: Array, truth: Array
             estimate[:, index] - 3 * sigma[:, index],
             estimate[:, index] + 3 * sigma[:, index],
         )
-        axis.fill_between(times, low, high, color=colour, alpha=0.2, linewidth=0, rasterized=True)
+        axis.fill_between(times, low, high, color=colour, alpha=0.2, linewidth=0)
         axis.plot(times, estimate[:, index], color=colour, linewidth=1.6)
         if truth is not None:
             axis.plot(times, truth[:, index], **dashed())
@@ -74,7 +74,7 @@ def _rates(axis: Axes, times: Array, estimate: Array, sigma: Array, truth: Array
 
 def _error(axis: Axes, index: int, times: Array, error: Array, bound: Array) -> None:
     colour = AXIS_COLOURS[index]
-    axis.fill_between(times, -bound, bound, color=colour, alpha=0.2, linewidth=0, rasterized=True)
+    axis.fill_between(times, -bound, bound, color=colour, alpha=0.2, linewidth=0)
     axis.plot(times, error, color=colour, linewidth=0.8)
     axis.axhline(0, color=GREY, linewidth=0.5)
     settled = np.abs(np.concatenate([error[len(error) // 3 :], bound[len(bound) // 3 :]]))

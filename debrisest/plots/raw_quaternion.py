@@ -32,7 +32,7 @@ def raw_quaternion(data: Data, context: str) -> Figure:
         shade_gaps(axis, times, ~np.isfinite(piece))
         for turn, colour in enumerate(_COLOURS):
             mine = np.where(piece % 2 == turn, raw[:, component], np.nan)
-            axis.plot(times, mine, ".", color=colour, markersize=2.4, mew=0, rasterized=True)
+            axis.plot(times, mine, ".", color=colour, markersize=2.4, mew=0)
         quaternion_axis(axis, component)
     time_axis(axes, times)
     heading(axes[0], "Raw quaternion", context)

@@ -38,7 +38,7 @@ class _Look(NamedTuple):
 
 _WHOLE = _Look(0.9, {"markersize": 2.6, "mew": 0.5})
 _CLOSE = _Look(1.4, {"markersize": 4.6, "mew": 0.8})
-_CROSSES: dict[str, Any] = {"linestyle": "", "marker": "x", "color": SKY, "rasterized": True}
+_CROSSES: dict[str, Any] = {"linestyle": "", "marker": "x", "color": SKY}
 
 
 @styled

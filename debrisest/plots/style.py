@@ -22,7 +22,7 @@ INK, GREY, SHADE = "#1a1a1a", "#6b6b6b", "#e4e4e4"
 AXIS_COLOURS = (BLUE, VERMILION, GREEN)
 WIDTH = 7.2
 """Width of every figure, inches."""
-_HEADING_COLUMNS = 105
+_HEADING_COLUMNS = 88
 
 _SETTINGS: dict[Any, Any] = {
     "font.family": "DejaVu Sans",

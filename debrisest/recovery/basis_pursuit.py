@@ -89,9 +89,10 @@ def basis_pursuit(
     coefficients (..., length // 2 + 1) to start from instead of zero: those of a similar signal,
     or `analyse(guess, length) / length`.
 
-    A signal is finished when v and its copy c of Eq. 20 differ by less than `tolerance`
-    (2-norm, relative to v), looked at every tenth iteration; what it becomes does not depend on
-    the other signals of the batch. An observed epoch that is not finite counts as not observed.
+    A signal is finished when v and its copy c of Eq. 20 differ by at most `tolerance` times
+    |s| / sqrt(n) (2-norms; the latter is about that of v), looked at every tenth iteration. It
+    does not depend on the other signals of the batch. An observed epoch that is not finite counts
+    as not observed.
     """
     if not (penalty > 0 and splitting > 0 and 0 < relaxation < 2):
         raise ValueError("penalty and splitting must be positive, relaxation between 0 and 2")
@@ -154,7 +155,7 @@ def _solve(
         steps = min(steps, iterations - done[active[0]])
         v[active], gap = _iterate(lasso, u, steps, relaxation)
         done[active] += steps
-        finished = gap < tolerance * _norm(v[active])
+        finished = gap <= tolerance * np.linalg.norm(lasso.samples, axis=-1) / lasso.length**0.5
         if finished.any():
             status[active[finished]] = RecoveryStatus.CONVERGED
             active, lasso, u = active[~finished], lasso.rows(~finished), u[~finished]

@@ -28,7 +28,7 @@ def continuous(q: Array, piece: IntArray) -> Array:
     products = np.sum(q[..., 1:, :] * q[..., :-1, :], axis=-1)
     turns = np.ones(piece.shape)
     turns[..., 1:][(products < 0) & (piece[..., 1:] == piece[..., :-1])] = -1.0
-    sign = np.cumprod(turns, axis=-1)
+    sign: Array = np.multiply.accumulate(turns, axis=-1)
     return q * (sign * _at_start(sign, piece))[..., None]
 
 

@@ -91,18 +91,17 @@ def search_signs(
     `dictionary_length`); during the search it is between `ratio` and twice that, so that the
     length seldom changes. The remaining parameters are those of `basis_pursuit`.
     """
-    batch = np.broadcast_shapes(samples.shape, piece.shape)
-    rows = np.broadcast_to(samples, batch).reshape(-1, batch[-1])
-    masks, group = np.unique(
-        np.broadcast_to(piece, batch).reshape(rows.shape), axis=0, return_inverse=True
-    )
-    sign = np.full((len(rows), max(masks.max(initial=-1) + 1, 0)), np.nan)
+    if first < 1 or beam < 1:
+        raise ValueError("the pieces tried first and the width of the beam must be at least 1")
+    runs = samples.reshape(-1, samples.shape[-1])
+    masks, group = np.unique(piece.reshape(runs.shape), axis=0, return_inverse=True)
+    sign = np.full((len(runs), int(piece.max(initial=-1)) + 1), np.nan)
     for index, mask in enumerate(masks):
         same = np.flatnonzero(group.reshape(-1) == index)
-        search = _Search(rows[same], mask, score, ratio, penalty, splitting, relaxation, beam)
+        search = _Search(runs[same], mask, score, ratio, penalty, splitting, relaxation, beam)
         found = _search(search, first, first_iterations, iterations)
         sign[same, : found.shape[-1]] = found
-    return sign.reshape(*batch[:-1], -1)
+    return sign.reshape(*samples.shape[:-1], sign.shape[-1])
 
 
 def _search(search: _Search, first: int, first_iterations: int, iterations: int) -> Array:

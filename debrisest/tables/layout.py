@@ -31,28 +31,35 @@ def sheets(scenario: LoadedScenario, cells: pd.DataFrame) -> list[Sheet]:
                 & cells["quantity"].isin(table.quantities)
             ]
             if not chosen.empty:
-                title = f"{table.title} ({table.statistic}, {window})"
-                found.append(Sheet(table.table, title, *_grid(chosen)))
+                heads, rows = _grid(chosen)
+                alone = f"{_heads(chosen)[0]}, " if len(table.quantities) == 1 else ""
+                title = f"{table.title}: {alone}{table.statistic}, {window}"
+                found.append(Sheet(table.table, title, heads, rows))
     return found
 
 
 def _grid(cells: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
     """Sources side by side for a single quantity, one below the other for several."""
-    names = list(dict.fromkeys(zip(cells["quantity"], cells["unit"])))
-    heads = [f"{name} [{unit}]" if unit != "1" else name for name, unit in names]
-    sources = _sources(cells)
+    names, sources = list(dict.fromkeys(cells["quantity"])), _sources(cells)
+    by_case = list(cells.groupby("case", sort=False))
     if len(names) == 1:
         rows = [
-            [str(case), *(_text(part, source, names[0][0]) for source in sources)]
-            for case, part in cells.groupby("case", sort=False)
+            [str(case), *(_text(part, source, names[0]) for source in sources)]
+            for case, part in by_case
         ]
-        return ["case", *(f"{source} {heads[0]}" for source in sources)], rows
+        return ["case", *sources], rows
     rows = [
-        [str(case), source, *(_text(part, source, name) for name, _ in names)]
-        for case, part in cells.groupby("case", sort=False)
+        [str(case), source, *(_text(part, source, name) for name in names)]
+        for case, part in by_case
         for source in sources
     ]
-    return ["case", "source", *heads], rows
+    return ["case", "source", *_heads(cells)], rows
+
+
+def _heads(cells: pd.DataFrame) -> list[str]:
+    """Return the quantities with their units."""
+    pairs = dict.fromkeys(zip(cells["quantity"], cells["unit"]))
+    return [f"{name} ({unit})" if unit != "1" else str(name) for name, unit in pairs]
 
 
 def _sources(cells: pd.DataFrame) -> list[str]:
@@ -61,7 +68,7 @@ def _sources(cells: pd.DataFrame) -> list[str]:
 
 
 def _text(part: pd.DataFrame, source: str, quantity: str) -> str:
-    """Return a figure of three digits and the symbol of its verdict."""
+    """Return a figure of three digits, its verdict's symbol, and before it the runs left out."""
     part = part[part["quantity"] == quantity]
     if source == PAPER:
         published = part["published"].dropna()
@@ -71,4 +78,6 @@ def _text(part: pd.DataFrame, source: str, quantity: str) -> str:
         return ""
     measured, verdict = own["measured"].iloc[0], own["verdict"].iloc[0]
     figure = f"{measured:.3g}" if pd.notna(measured) else "-"
-    return f"{figure} {SYMBOLS[Verdict(verdict)]}".rstrip()
+    lost = int(own["failed"].iloc[0] + own["diverged"].iloc[0])
+    note = f"({lost}) " if lost else ""
+    return f"{note}{figure} {SYMBOLS[Verdict(verdict)]}".rstrip()

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import pandas as pd
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
@@ -62,13 +63,14 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     console = Console(width=110)
     with console.capture() as capture:
         for sheet in sheets(scenario, cells):
+            console.print(f"\n[bold]Table {sheet.number}: {sheet.title}[/]", soft_wrap=True)
             console.print(_rich_table(sheet))
-        console.print(LEGEND, style="dim")
+        console.print(f"{LEGEND}\n", style="dim", soft_wrap=True)
     return capture.get()
 
 
 def _rich_table(sheet: Sheet) -> Table:
-    table = Table(title=f"Table {sheet.number}: {sheet.title}", title_justify="left")
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for head in sheet.heads:
         table.add_column(head, justify="left" if head in ("case", "source") else "right")
     previous = ""

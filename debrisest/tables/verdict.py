@@ -22,7 +22,10 @@ SYMBOLS = {
     Verdict.NOT_REPRODUCED: "x",
     Verdict.UNPUBLISHED: "",
 }
-LEGEND = "= reproduced, < better, > worse than published, x not reproduced (most runs diverged)"
+LEGEND = (
+    "= reproduced, < better, > worse than published, x not reproduced (most runs were lost); "
+    "(n) runs that diverged or failed, left out"
+)
 
 
 def verdict(measured: float, published: float | None, factor: float, lost: float) -> Verdict:

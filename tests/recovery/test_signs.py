@@ -1,0 +1,141 @@
+"""Signs of pieces that are known because the test flipped them."""
+
+from functools import partial
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from debrisest.recovery.basis_pursuit import BasisPursuit
+from debrisest.recovery.pieces import pieces
+from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
+
+seeds = st.integers(0, 2**32 - 1)
+TIME = 240
+
+
+def smooth_signal(rng):
+    """Three sines with periods of 25 to 80 epochs, on no line of any transform, and noise."""
+    period = rng.uniform(25, 80, (3, 1))
+    phase = rng.uniform(0, 2 * np.pi, (3, 1))
+    sines = np.sin(2 * np.pi * np.arange(TIME) / period + phase)
+    return np.array([0.6, 0.3, 0.1]) @ sines + 0.005 * rng.standard_normal(TIME)
+
+
+def mask_with_gaps(rng, count):
+    """`count` pieces with 3 to 6 unobserved epochs between them."""
+    observed = np.ones(TIME, bool)
+    for k in range(1, count):
+        begin = k * TIME // count + rng.integers(-3, 4)
+        observed[begin : begin + rng.integers(3, 7)] = False
+    return observed
+
+
+def flipped(signal, observed, flips):
+    """The signal (run, time) with each piece's sign `flips` (run, piece), NaN in the gaps."""
+    return np.where(observed, signal * flips[:, pieces(observed)], np.nan)
+
+
+@given(seeds)
+@settings(max_examples=4, deadline=None)
+def test_every_pattern_of_flips_is_undone(seed):
+    rng = np.random.default_rng(seed)
+    signal, observed = smooth_signal(rng), mask_with_gaps(rng, 7)
+    flips = np.array(list(product([1.0, -1.0], repeat=7)))
+    runs = flipped(signal, observed, flips)
+    sign = search_signs(runs, np.broadcast_to(pieces(observed), runs.shape))
+    assert (sign == flips * flips[:, :1]).all()
+
+
+def test_the_answer_follows_the_score():
+    """A score that wants the roughest signal gets it: nothing but the score decides."""
+    rng = np.random.default_rng(3)
+    signal, observed = smooth_signal(rng), mask_with_gaps(rng, 7)
+    flips = rng.choice([-1.0, 1.0], (4, 7))
+    runs = flipped(signal, observed, flips)
+    piece = np.broadcast_to(pieces(observed), runs.shape)
+    right = flips * flips[:, :1]
+    assert (search_signs(runs, piece, lasso_score) == right).all()
+    wrong = search_signs(runs, piece, lambda solution: -lasso_score(solution))
+    assert (wrong != right).any(axis=-1).all()
+
+
+def test_score_zero_for_all_keeps_the_first_hypotheses():
+    rng = np.random.default_rng(4)
+    signal, observed = smooth_signal(rng), mask_with_gaps(rng, 7)
+    sign = search_signs(
+        signal, pieces(observed), lambda solution: np.zeros(solution.objective.shape)
+    )
+    assert (sign == 1.0).all()
+
+
+def test_runs_with_other_masks_change_nothing():
+    rng = np.random.default_rng(5)
+    masks = [mask_with_gaps(rng, count) for count in (1, 3, 7, 7, 9)] + [np.zeros(TIME, bool)]
+    masks.append(masks[2])
+    runs = np.stack(
+        [flipped(smooth_signal(rng), mask, rng.choice([-1.0, 1.0], (1, 9)))[0] for mask in masks]
+    )
+    piece = pieces(np.stack(masks))
+    together = search_signs(runs, piece)
+    assert together.shape == (7, 9)
+    for k, count in enumerate((1, 3, 7, 7, 9, 0, 7)):
+        alone = search_signs(runs[k], piece[k])
+        assert alone.shape == (count,)
+        assert (alone == together[k, :count]).all()
+        assert np.isnan(together[k, count:]).all()
+        assert (together[k, : min(count, 1)] == 1.0).all()
+
+
+def test_batch_axes_are_kept():
+    rng = np.random.default_rng(6)
+    observed = mask_with_gaps(rng, 6)
+    flips = rng.choice([-1.0, 1.0], (6, 6))
+    runs = flipped(smooth_signal(rng), observed, flips)
+    sign = search_signs(runs.reshape(2, 3, TIME), np.tile(pieces(observed), (2, 3, 1)))
+    assert (sign.reshape(6, 6) == flips * flips[:, :1]).all()
+
+
+def test_nothing_observed_anywhere_has_no_signs():
+    assert search_signs(np.full((3, 20), np.nan), np.full((3, 20), -1)).shape == (3, 0)
+
+
+@pytest.mark.parametrize(("first", "beam"), [(1, 1), (2, 4), (7, 1), (12, 3)])
+def test_width_of_the_search_is_free(first, beam):
+    rng = np.random.default_rng(7)
+    signal, observed = smooth_signal(rng), mask_with_gaps(rng, 7)
+    flips = rng.choice([-1.0, 1.0], (1, 7))
+    sign = search_signs(
+        flipped(signal, observed, flips), pieces(observed)[None], first=first, beam=beam
+    )
+    assert sign.shape == (1, 7)
+    assert first == 1 or (sign == flips * flips[:, :1]).all()
+
+
+def test_printed_dictionary_runs_with_windows_of_any_length():
+    """As many atoms as samples: whatever comes out, it is a sign for every piece."""
+    rng = np.random.default_rng(8)
+    signal, observed = smooth_signal(rng), mask_with_gaps(rng, 7)
+    sign = search_signs(
+        np.where(observed, signal, np.nan), pieces(observed), sparsity_score, ratio=1
+    )
+    assert sign[0] == 1.0
+    assert (np.abs(sign) == 1.0).all()
+
+
+def test_sparsity_score_is_eq_28_on_the_full_spectrum():
+    """Lines 0, 1, 2 and 3 of six: modulus 5, twice 0.5, twice 0.02, 1."""
+    half = np.array([5.0, 0.3 + 0.4j, 0.02j, -1.0])
+    zero = np.zeros(())
+    solution = BasisPursuit(np.zeros(6), half, 6, zero, zero.astype(int), zero.astype(int))
+    assert sparsity_score(solution) == pytest.approx(6 + 10 * 7.04)
+    score = partial(sparsity_score, count_weight=3.0, modulus_weight=2.0, threshold=0.1)
+    assert score(solution) == pytest.approx(3 * 4 + 2 * 7.04)
+
+
+@pytest.mark.parametrize("wrong", [{"first": 0}, {"beam": 0}])
+def test_empty_searches_are_refused(wrong):
+    with pytest.raises(ValueError, match="at least 1"):
+        search_signs(np.ones(20), np.zeros(20, int), **wrong)
