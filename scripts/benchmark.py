@@ -1,0 +1,241 @@
+"""Ratios of CPU time to well-known peers, at equal results, measured in turns in one process.
+
+Usage: python scripts/benchmark.py [ROUNDS]    (needs the extra [bench])
+
+Times of one machine say little; the ratios to a peer that runs beside it do. Every comparison
+checks first that both give the same numbers.
+"""
+
+import os
+
+for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[_variable] = "1"
+
+import io
+import logging
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
+from typing import NamedTuple
+
+import numpy as np
+from filterpy.kalman import MerweScaledSigmaPoints, UnscentedKalmanFilter
+from rich.console import Console
+from rich.table import Table
+from scipy.fft import fft, ifft
+from scipy.sparse.linalg import LinearOperator
+from spgl1 import spg_lasso
+
+from debrisest.arrays import Array, BoolArray
+from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.dynamics.torque_free import torque_free
+from debrisest.filters.model import Model
+from debrisest.filters.unscented import unscented
+from debrisest.problems.tumbling_attitude import TumblingAttitude, Variances
+from debrisest.recovery.basis_pursuit import basis_pursuit
+from debrisest.recovery.fourier import l1_norm
+
+MOMENTS, RATE = np.array([0.618, 0.707, 0.345]), np.radians([7.2, 5.525, -1.624])
+NOISE = Variances(q_ib=1e-9, q_bf=1e-11, rate_rad2_s2=1e-9, moments=1e-10)
+START = Variances(q_ib=1e-2, q_bf=0.1, rate_rad2_s2=2e-2, moments=0.02)
+logging.getLogger("spgl1").setLevel(logging.CRITICAL)
+
+GAP = 1e-4
+"""Objectives closer than this, relatively, count as equal."""
+
+
+class Row(NamedTuple):
+    """One comparison: CPU seconds per unit of work, ours and the peer's, by round."""
+
+    name: str
+    unit: str
+    ours: list[float]
+    peer: list[float]
+    agreement: str
+
+
+def cpu(action: Callable[[], object]) -> float:
+    """Return the CPU seconds of an action."""
+    before = time.process_time()
+    action()
+    return time.process_time() - before
+
+
+# --- the unscented filter against filterpy ----------------------------------------------------
+
+
+def tumbling(runs: int, epochs: int) -> tuple[Model, Array, Array, Array]:
+    """Return model, start and noisy attitudes (run, time, 4) of the paper's first case."""
+    problem = TumblingAttitude(
+        kind="tumbling_attitude", integrator="rk4", process_noise=NOISE, measurement_noise=1e-4
+    )
+    q, _ = torque_free(np.arange(float(epochs)), np.array([1.0, 0, 0, 0]), RATE, MOMENTS)
+    noise = 0.01 * np.random.default_rng(1).standard_normal((runs, epochs, 4))
+    measured = quaternion.normalize(q + noise)
+    state = np.concatenate([q[0], [1, 0, 0, 0], RATE, np.full(3, 1 / np.sqrt(3))])
+    return (
+        problem.model(Clock(float(epochs), 1.0)),
+        np.tile(state, (runs, 1)),
+        np.tile(START.diagonal(), (runs, 1, 1)),
+        measured,
+    )
+
+
+def filterpy_states(model: Model, state: Array, covariance: Array, measured: Array) -> Array:
+    """Return the states (time, 14) of filterpy's filter on the same model, for one run."""
+    points = MerweScaledSigmaPoints(14, alpha=1.0, beta=2.0, kappa=0.0)
+    peer = UnscentedKalmanFilter(
+        dim_x=14,
+        dim_z=4,
+        dt=1.0,
+        fx=lambda x, _: model.process(x, 0),
+        hx=lambda x: model.measurement(x, 0),
+        points=points,
+    )
+    peer.x, peer.P = state.copy(), covariance.copy()
+    peer.Q, peer.R = model.process_noise, model.measurement_noise
+    states = []
+    for epoch, y in enumerate(measured):
+        if epoch == 0:
+            peer.sigmas_f = points.sigma_points(peer.x, peer.P)
+        else:
+            peer.predict()
+        peer.update(np.where(y @ model.measurement(peer.x, 0) < 0, -y, y))
+        peer.x = model.retract(peer.x, np.zeros(14))
+        states.append(peer.x.copy())
+    return np.array(states)
+
+
+def benchmark_unscented(runs: int, epochs: int, rounds: int) -> Row:
+    """Compare a batch of runs with filterpy, which takes them one at a time."""
+    ours = tumbling(runs, epochs)
+    one = tumbling(1, 40)
+    theirs = filterpy_states(one[0], one[1][0], one[2][0], one[3][0])
+    gap = np.abs(unscented(*one, redraw=True).state[0] - theirs).max()
+    assert gap < 1e-8, f"filterpy's states differ by {gap}"
+    row = Row(f"unscented filter, {runs} at a time / filterpy", "run-step", [], [], f"{gap:.0e}")
+    for _ in range(rounds):
+        row.ours.append(cpu(lambda: unscented(*ours)) / (runs * epochs))
+        row.peer.append(cpu(lambda: filterpy_states(one[0], one[1][0], one[2][0], one[3][0])) / 40)
+    return row
+
+
+# --- basis pursuit against spgl1 --------------------------------------------------------------
+
+
+def gapped_signals(hypotheses: int) -> tuple[Array, BoolArray]:
+    """Return noisy quaternions (hypothesis, component, time) of 1500 s with random gaps."""
+    q, _ = torque_free(np.arange(1500.0), np.array([1.0, 0, 0, 0]), RATE, MOMENTS)
+    rng = np.random.default_rng(2)
+    seen = np.repeat(rng.random(75) < 0.8, 20)
+    noisy = q.T + 0.014 * rng.standard_normal((hypotheses, 4, 1500))
+    return np.where(seen, noisy, 0.0), seen
+
+
+def spgl1_objective(
+    sample: Array, seen: BoolArray, length: int, tau: float, penalty: float, iterations: int
+) -> float:
+    """Return the lasso's objective that spgl1 reaches when it is told the right l1 norm."""
+    samples = len(sample)
+
+    def synthesise(x: Array) -> Array:
+        return np.asarray(length * ifft(x)[:samples][seen])
+
+    def analyse(y: Array) -> Array:
+        spread = np.zeros(samples, complex)
+        spread[seen] = y
+        return np.asarray(fft(spread, length))
+
+    shape = (int(seen.sum()), length)
+    operator = LinearOperator(shape, matvec=synthesise, rmatvec=analyse, dtype=complex)
+    with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
+        x, *_ = spg_lasso(
+            operator, sample[seen].astype(complex), tau, iter_lim=iterations, verbosity=0
+        )
+    misfit = sample[seen] - synthesise(x)
+    return float(0.5 * np.sum(np.abs(misfit) ** 2) + penalty * np.abs(x).sum())
+
+
+def benchmark_salsa(rounds: int) -> Row:
+    """Compare 16 hypotheses of 4 components at once with spgl1, one signal at a time."""
+    length, penalty, hypotheses = 3000, 0.5, 16
+    samples, seen = gapped_signals(hypotheses)
+
+    def ours(iterations: int, tolerance: float = 0.0) -> object:
+        return basis_pursuit(samples, seen, length, penalty, 0.1, iterations, tolerance=tolerance)
+
+    exact = basis_pursuit(samples, seen, length, penalty, 0.1, 5000, tolerance=1e-8)
+    iterations = next(
+        count
+        for count in range(5, 400, 5)
+        if np.all(
+            basis_pursuit(samples, seen, length, penalty, 0.1, count, tolerance=0.0).objective
+            < (1 + GAP) * exact.objective
+        )
+    )
+    signal, goal = samples[0, 0], float(exact.objective[0, 0])
+    tau = float(l1_norm(exact.coefficients[0, 0], length))
+    limit = next(
+        count
+        for count in (10, 15, 20, 30, 40, 60, 80, 120, 160, 240, 320, 640)
+        if spgl1_objective(signal, seen, length, tau, penalty, count) < (1 + GAP) * goal
+    )
+    row = Row(
+        f"basis pursuit, {hypotheses} x 4 ({iterations} its) / spgl1 lasso ({limit} its)",
+        "signal",
+        [],
+        [],
+        f"{GAP:.0e}",
+    )
+    for _ in range(rounds):
+        row.ours.append(cpu(lambda: ours(iterations)) / (4 * hypotheses))
+        row.peer.append(cpu(lambda: spgl1_objective(signal, seen, length, tau, penalty, limit)))
+    return row
+
+
+# --- the command line -------------------------------------------------------------------------
+
+
+def help_seconds(rounds: int) -> list[float]:
+    """Return the CPU seconds that ``debrisest --help`` takes, process start included."""
+    seconds = []
+    for _ in range(rounds):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run(
+            [sys.executable, "-m", "debrisest", "--help"], check=True, stdout=subprocess.DEVNULL
+        )
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds.append(after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime)
+    return seconds
+
+
+def main(rounds: int = 5) -> None:
+    """Print one row per comparison: medians, and the ratios' range over the rounds."""
+    rows = [
+        benchmark_unscented(100, 100, rounds),
+        benchmark_unscented(1, 300, rounds),
+        benchmark_salsa(rounds),
+    ]
+    table = Table("comparison", "per", "ours, us", "peer, us", "ratio (range)", "results agree to")
+    for row in rows:
+        ratios = np.array(row.peer) / np.array(row.ours)
+        table.add_row(
+            row.name,
+            row.unit,
+            f"{1e6 * np.median(row.ours):.0f}",
+            f"{1e6 * np.median(row.peer):.0f}",
+            f"{np.median(ratios):.1f} ({ratios.min():.1f}-{ratios.max():.1f})",
+            row.agreement,
+        )
+    console = Console(width=120)
+    console.print(table)
+    seconds = help_seconds(rounds)
+    console.print(f"debrisest --help: {np.median(seconds):.3f} s of CPU")
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:2]))
