@@ -33,7 +33,7 @@ class SignSearch(Keys):
     first_pieces: Annotated[int, Field(ge=1, le=12)] = 5
     beam: Count = 2
     first_iterations: Count = 60
-    iterations: Count = 12
+    iterations: Count = 8
 
     def scorer(self) -> Callable[[Solution], Array]:
         """Return the penalty of a hypothesis, the lower the better."""

@@ -105,8 +105,9 @@ def _pooled(
     for name in quantities:
         parts = [_on(times, r.times, r.errors[name][mine]) for r, mine in zip(results, kept)]
         data[name] = np.concatenate(parts)
+    cases = "1 case" if len(results) == 1 else f"{len(results)} cases"
     context = (
-        f"{scenario.name}, estimator {estimator}: {good} runs of {len(results)} cases; "
+        f"{scenario.name}, estimator {estimator}: {good} of {runs} runs of {cases}; "
         f"left out as diverged or failed: {runs - good}"
     )
     return Source((estimator,), context, data)

@@ -77,8 +77,9 @@ def _error(axis: Axes, index: int, times: Array, error: Array, bound: Array) -> 
     axis.fill_between(times, -bound, bound, color=colour, alpha=0.2, linewidth=0)
     axis.plot(times, error, color=colour, linewidth=0.8)
     axis.axhline(0, color=GREY, linewidth=0.5)
-    settled = np.abs(np.concatenate([error[len(error) // 3 :], bound[len(bound) // 3 :]]))
-    axis.set_ylim(*_range(np.concatenate([settled, -settled])))
+    settled = np.concatenate([error, bound]).reshape(2, -1)[:, len(error) // 3 :]
+    limit = 1.1 * float(np.max(np.abs(settled), where=np.isfinite(settled), initial=0.0)) or 1.0
+    axis.set_ylim(-limit, limit)
     axis.locator_params(axis="y", nbins=5)
     axis.set_ylabel(f"error {index + 1} [{unit('rate')}]")
 

@@ -54,7 +54,8 @@ def recovered_quaternion(data: Data, context: str) -> Figure:
     time_axis([whole], times, label=False)
     time_axis(close, times, LAST_S)
     heading(whole, "Recovered quaternion", context)
-    close[0].set_title(f"the last {LAST_S:.0f} s", pad=4)
+    start, end = close[0].get_xlim()
+    close[0].set_title(f"the last {end - start:g} s", pad=4)
     legend_below(figure, _handles(truth is not None))
     return figure
 

@@ -1,0 +1,99 @@
+"""Rates of a torque-free rigid body in closed form, for any moments and any rate.
+
+The textbook form (Biondi et al. 2017, Eq 3) holds for ``J1 > J2 > J3`` and ``L^2 < 2 T J2`` only,
+and solves for a phase that equal moments and steady spins leave undefined. Here the addition
+theorem of the elliptic functions carries the initial rates themselves, and no case is special.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from debrisest.arrays import Array, IntArray
+from debrisest.dynamics.elliptic import elliptic, quarter_period
+
+_SLOWEST = 1e-150  # rad/s, the frequency of a body that does not nutate
+_SMALLEST_COMPLEMENT = 1e-290  # of the squared modulus, where half a period is endless
+
+
+@dataclass(frozen=True)
+class Nutation:
+    """Rates ``(..., 3)`` in ``order``: multiples of ``dn``, ``sn`` and ``cn`` of one phase.
+
+    The order of the axes is: the one that the rate circles, whose component keeps its sign, the
+    intermediate one, the other extreme; with it ``w_a' = slope_a w_b w_c``, and cyclically.
+    ``complement`` is ``1 - k^2``. ``dn2`` and ``k2_sn2`` are ``dn^2`` and ``k^2 sn^2`` of the
+    initial phase; they add up to 1.
+    """
+
+    order: IntArray
+    rate0: Array
+    slope: Array
+    frequency: Array
+    complement: Array
+    dn2: Array
+    k2_sn2: Array
+
+    @property
+    def period(self) -> Array:
+        """Period ``(..., 1)`` of the component about the circled axis, s."""
+        return 2.0 * quarter_period(self.complement) / self.frequency
+
+    def ordered_rate(self, times: Array) -> Array:
+        """Rates ``(..., time, 3)`` in ``order``; their divisor is a sum of squares."""
+        a, b, c = np.moveaxis(self.rate0, -1, 0)[..., None]
+        slope_a, slope_b, slope_c = np.moveaxis(self.slope, -1, 0)[..., None]
+        sn, cn, dn = elliptic(self.frequency * times, self.complement)
+        span = sn / self.frequency
+        sums = [
+            a * dn + slope_a * b * c * span * cn,
+            b * cn * dn + slope_b * c * a * span,
+            c * cn + slope_c * a * b * span * dn,
+        ]
+        return np.stack(sums, axis=-1) / (self.dn2 + self.k2_sn2 * cn * cn)[..., None]
+
+    def rate(self, times: Array) -> Array:
+        """Rates ``(..., time, 3)`` in the order of the moments, rad/s."""
+        return _pick(self.ordered_rate(times), np.argsort(self.order, axis=-1)[..., None, :])
+
+
+def nutation(rate0: Array, moments: Array) -> Nutation:
+    """Nutation of bodies with principal ``moments`` and ``rate0``, both ``(..., 3)``.
+
+    A body without rate about the circled axis spins steadily.
+    """
+    slope = (np.roll(moments, -1, axis=-1) - np.roll(moments, -2, axis=-1)) / moments
+    order = _axis_order(rate0, moments, slope)
+    rate0, slope = _pick(rate0, order), _pick(slope, order)
+    around = -slope[..., 1] * slope[..., 2] * rate0[..., 0] ** 2
+    across = slope[..., 0] * slope[..., 2] * rate0[..., 1] ** 2
+    steady = around <= _SMALLEST_COMPLEMENT * across
+    square = np.where(steady, 1.0, around + across)
+    complement = np.maximum(_gap(rate0, slope) / square, _SMALLEST_COMPLEMENT)
+    return Nutation(
+        order=order,
+        rate0=rate0,
+        slope=slope,
+        frequency=np.where(steady, _SLOWEST, np.sqrt(square))[..., None],
+        complement=np.where(steady, 1.0, complement)[..., None],
+        dn2=np.where(steady, 1.0, around / square)[..., None],
+        k2_sn2=np.where(steady, 0.0, across / square)[..., None],
+    )
+
+
+def _axis_order(rate0: Array, moments: Array, slope: Array) -> IntArray:
+    order = np.argsort(moments, axis=-1)
+    gap = _gap(_pick(rate0, order), _pick(slope, order))
+    return np.asarray(np.where(gap[..., None] < 0.0, order[..., ::-1], order))
+
+
+def _gap(rate: Array, slope: Array) -> Array:
+    """Squared frequency times ``1 - k^2``; negative if the first axis is not the circled one."""
+    return np.asarray(
+        slope[..., 1] * slope[..., 0] * rate[..., 2] ** 2
+        - slope[..., 1] * slope[..., 2] * rate[..., 0] ** 2
+    )
+
+
+def _pick(array: Array, order: IntArray) -> Array:
+    return np.take_along_axis(array, order, axis=-1)
