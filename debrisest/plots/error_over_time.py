@@ -6,16 +6,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from debrisest.arrays import Array, Data
-from debrisest.plots.style import (
-    AXIS_COLOURS,
-    GREY,
-    WIDTH,
-    heading,
-    legend_below,
-    styled,
-    time_axis,
-    unit,
-)
+from debrisest.plots.axes import heading, legend_below, time_axis, unit
+from debrisest.plots.style import AXIS_COLOURS, GREY, WIDTH, styled
 from debrisest.vocabulary import table_scale
 
 QUANTITIES = ("rate_1", "rate_2", "rate_3")

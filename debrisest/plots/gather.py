@@ -98,6 +98,7 @@ def _pooled(
     kept = [_kept(scenario, result, quantities) for result in results]
     runs = sum(result.runs for result in results)
     good = sum(int(mine.sum()) for mine in kept)
+    failed = sum(len(result.failures) for result in results)
     if not good:
         return None
     times = np.unique(np.concatenate([result.times for result in results]))
@@ -107,8 +108,8 @@ def _pooled(
         data[name] = np.concatenate(parts)
     cases = "1 case" if len(results) == 1 else f"{len(results)} cases"
     context = (
-        f"{scenario.name}, estimator {estimator}: {good} of {runs} runs of {cases}; "
-        f"left out as diverged or failed: {runs - good}"
+        f"{scenario.name}, estimator {estimator}, {cases}, {runs} runs; "
+        f"left out: {runs - good - failed} diverged" + (f", {failed} failed" if failed else "")
     )
     return Source((estimator,), context, data)
 

@@ -8,17 +8,8 @@ from matplotlib.patches import Patch
 
 from debrisest.arrays import Array, Data
 from debrisest.dynamics.inertia import principal_axes
-from debrisest.plots.style import (
-    AXIS_COLOURS,
-    GREY,
-    WIDTH,
-    dashed,
-    heading,
-    legend_below,
-    styled,
-    time_axis,
-    unit,
-)
+from debrisest.plots.axes import heading, legend_below, time_axis, unit
+from debrisest.plots.style import AXIS_COLOURS, GREY, TRUTH, WIDTH, styled
 from debrisest.vocabulary import table_scale
 
 _AXES = range(3)
@@ -67,7 +58,7 @@ def _rates(axis: Axes, times: Array, estimate: Array, sigma: Array, truth: Array
         axis.fill_between(times, low, high, color=colour, alpha=0.2, linewidth=0)
         axis.plot(times, estimate[:, index], color=colour, linewidth=1.6)
         if truth is not None:
-            axis.plot(times, truth[:, index], **dashed())
+            axis.plot(times, truth[:, index], **TRUTH)
     axis.set_ylim(*_range(estimate if truth is None else truth))
     axis.set_ylabel(f"rate [{unit('rate')}]")
 
@@ -100,5 +91,5 @@ def _handles(with_truth: bool) -> list[Line2D | Patch]:
         for index, colour in zip(_AXES, AXIS_COLOURS)
     ]
     band = Patch(facecolor=GREY, alpha=0.3, linewidth=0, label="±3σ")
-    truth = Line2D([], [], label="truth", **dashed())
+    truth = Line2D([], [], label="truth", **TRUTH)
     return [*lines, band, *([truth] if with_truth else [])]

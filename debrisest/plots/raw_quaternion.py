@@ -6,18 +6,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from debrisest.arrays import Data
-from debrisest.plots.style import (
-    BLUE,
-    SHADE,
-    VERMILION,
-    WIDTH,
-    heading,
-    legend_below,
-    quaternion_axis,
-    shade_gaps,
-    styled,
-    time_axis,
-)
+from debrisest.plots.axes import heading, legend_below, quaternion_axis, shade_gaps, time_axis
+from debrisest.plots.style import BLUE, SHADE, VERMILION, WIDTH, styled
 
 _COLOURS = (BLUE, VERMILION)
 

@@ -10,19 +10,8 @@ from matplotlib.patches import Patch
 
 from debrisest.arrays import Array, Data
 from debrisest.assessment.attitude import true_feature_attitude
-from debrisest.plots.style import (
-    SHADE,
-    SKY,
-    VERMILION,
-    WIDTH,
-    dashed,
-    heading,
-    legend_below,
-    quaternion_axis,
-    shade_gaps,
-    styled,
-    time_axis,
-)
+from debrisest.plots.axes import heading, legend_below, quaternion_axis, shade_gaps, time_axis
+from debrisest.plots.style import SHADE, SKY, TRUTH, VERMILION, WIDTH, styled
 from debrisest.recovery.pieces import continuous
 
 LAST_S = 300.0
@@ -68,7 +57,7 @@ def _component(
     axis.plot(times, samples[:, component], **_CROSSES, **look.samples)
     axis.plot(times, data["q_if"][:, component], color=VERMILION, linewidth=look.line)
     if truth is not None:
-        axis.plot(times, truth[:, component], **dashed())
+        axis.plot(times, truth[:, component], **TRUTH)
     quaternion_axis(axis, component)
 
 
@@ -93,5 +82,5 @@ def _handles(with_truth: bool) -> list[Line2D | Patch]:
     cross = Line2D([], [], linestyle="", marker="x", markersize=4.5, color=SKY)
     cross.set_label("raw samples, signs from the search")
     line = Line2D([], [], color=VERMILION, label="recovered")
-    truth = Line2D([], [], label="truth", **dashed())
+    truth = Line2D([], [], label="truth", **TRUTH)
     return [cross, line, *([truth] if with_truth else []), Patch(facecolor=SHADE, label="gap")]

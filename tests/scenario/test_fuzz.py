@@ -13,7 +13,7 @@ SMALL = (Path(__file__).parent.parent / "scenarios" / "small.yaml").read_text()
 LINES = SMALL.splitlines(keepends=True)
 TOKENS = [
     "null", "~", "true", "-1", "0", "1e400", ".inf", "[]", "{}", "''", '"', "[1]", "{a: 1}", "?",
-    "- ", ": ", "#", "|", ">", "&x", "*x", "*start", "<<: *start", "%", "@", "`", "\t", "---",
+    "- ", ": ", "#", "|", ">", "&x", "*x", "%", "@", "`", "\t", "---",
     "...", "\ufeff", "\u0085", "\x00", "é", "kind", "unscented", "x" * 300,
 ]  # fmt: skip
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
-from debrisest.plots.style import gaps, time_axis, unit
+from debrisest.plots.axes import gaps, time_axis, unit
 
 
 @given(

@@ -1,0 +1,153 @@
+"""Pose, rates and inertia ratios of an unknown target from the pixels of two cameras.
+
+Frames: ``l`` of the leader, which carries the cameras (see `debrisest.dynamics.relative_orbit`),
+``t`` of the target, its principal axes. The state (15 + 3N) is the centre of mass in ``l`` and its
+velocity (Pesce et al. 2017: rho, rho-dot), the target's rate relative to ``l``, in ``l`` (omega),
+``q_lt`` (q; D takes target axes to ``l``), the inertia ratios ``k`` and N points in ``t`` (P_i).
+Here the quaternion is additive, as in the paper. Departures from the printed equations:
+
+* Everywhere D is divided by the square of the quaternion's norm; with ``raw_rotation`` it is not,
+  and a filter then uses the norm as a free scale of the cloud of points.
+* Eqs 7-18: see `debrisest.dynamics.relative_orbit` and `debrisest.dynamics.relative_rotation`.
+* Eqs 24-27: see `debrisest.sensors.stereo`.
+* Eq 37: what is measured is the angular acceleration of the target in ``t``.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from debrisest.arrays import Array, IntArray
+from debrisest.dynamics import inertia_ratios
+from debrisest.dynamics.relative_orbit import Leader, leader_orbit, translation_step
+from debrisest.dynamics.relative_rotation import cross, rotate, rotation_step, unrotate
+from debrisest.filters.model import Model
+from debrisest.sensors import stereo
+
+POSITION, VELOCITY, RATE = slice(0, 3), slice(3, 6), slice(6, 9)
+Q, K, POINTS = slice(9, 13), slice(13, 15), slice(15, None)
+
+class Shown(NamedTuple):
+    """Which groups of measurements there are."""
+
+    pixels: bool = True
+    flow: bool = True
+    disparity: bool = True
+    acceleration: bool = False
+
+
+class Setup(NamedTuple):
+    """What is known without error: orbit, cameras, number of points; and the time step, s."""
+
+    leader: Leader
+    """At epoch 0 and every half step after it."""
+    step: float
+    points: int = 5
+    baseline: float = 1.0
+    shown: Shown = Shown()
+    raw_rotation: bool = False
+
+    @property
+    def rows(self) -> IntArray:
+        """Return the rows of `stereo.measure` that each point has."""
+        groups = (self.shown.pixels, self.shown.flow, self.shown.disparity)
+        slices = (stereo.PIXELS, stereo.FLOW, stereo.DISPARITY)
+        every = np.arange(stereo.ROWS)
+        return np.concatenate([every[rows] for on, rows in zip(groups, slices) if on] + [every[:0]])
+
+    def moments_of_step(self, k: int, direction: int = 1) -> tuple[Leader, Leader, Leader]:
+        """Return the leader at start, middle and end of the step from epoch k (or back)."""
+        index = 2 * k
+        return (
+            self.leader.at(index),
+            self.leader.at(index + direction),
+            self.leader.at(index + 2 * direction),
+        )
+
+
+def setup(
+    epochs: int,
+    step: float,
+    semi_major_axis: float,
+    eccentricity: float,
+    true_anomaly: float,
+    points: int = 5,
+    baseline: float = 1.0,
+    shown: Shown = Shown(),
+    raw_rotation: bool = False,
+) -> Setup:
+    """Return the setup of ``epochs`` epochs (the first at the true anomaly), SI and rad."""
+    times = 0.5 * step * np.arange(2 * epochs - 1)
+    leader = leader_orbit(times, semi_major_axis, eccentricity, true_anomaly)
+    return Setup(leader, step, points, baseline, shown, raw_rotation)
+
+
+def process(known: Setup, state: NDArray[Any], k: int) -> NDArray[Any]:
+    """States ``(..., n)`` one step after epoch ``k``."""
+    leader = known.moments_of_step(k)
+    following = state.copy()
+    following[..., POSITION], following[..., VELOCITY] = translation_step(
+        state[..., POSITION], state[..., VELOCITY], leader, known.step
+    )
+    following[..., RATE], following[..., Q] = rotation_step(
+        state[..., RATE], state[..., Q], state[..., K], leader, known.step, known.raw_rotation
+    )
+    return following
+
+
+def points_in_view(
+    state: NDArray[Any], points: int, raw: bool = False
+) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Points and their velocities ``(..., N, 3)`` in ``l`` (Eqs 19-21)."""
+    body = state[..., POINTS].reshape(*state.shape[:-1], points, 3)
+    arm = rotate(state[..., None, Q], body, raw)
+    velocity = state[..., None, VELOCITY] + cross(state[..., None, RATE], arm)
+    return state[..., None, POSITION] + arm, velocity
+
+
+def target_acceleration(known: Setup, state: NDArray[Any], k: int) -> NDArray[Any]:
+    """Angular acceleration of the target ``(..., 3)`` in ``t``, rad/s^2, at epoch ``k``."""
+    spin = np.array([0.0, 0.0, float(known.leader.rate[2 * k])])
+    rate_t = unrotate(state[..., Q], state[..., RATE] + spin, known.raw_rotation)
+    return inertia_ratios.angular_acceleration(rate_t, state[..., K])
+
+
+def measurement(known: Setup, state: NDArray[Any], k: int) -> NDArray[Any]:
+    """Measurements ``(..., m)`` of epoch ``k``: point by point, then the angular acceleration."""
+    point, velocity = points_in_view(state, known.points, known.raw_rotation)
+    shown = stereo.measure(point, velocity, known.baseline)[..., known.rows]
+    rows = shown.reshape(*state.shape[:-1], -1)
+    if not known.shown.acceleration:
+        return rows
+    return np.concatenate([rows, target_acceleration(known, state, k)], axis=-1)
+
+
+def additive_model(known: Setup, process_noise: Array, measurement_noise: Array) -> Model:
+    """Return the model for a filter whose errors are the components of the state.
+
+    Covariances ``(n, n)`` per step and ``(m, m)``; a correction is added, then the quaternion is
+    scaled to unit norm, as in the paper.
+    """
+    return Model(
+        process=lambda state, k: process(known, state, k),
+        measurement=lambda state, k: measurement(known, state, k),
+        process_noise=process_noise,
+        measurement_noise=measurement_noise,
+        error_names=error_names("q_lt_0 q_lt_1 q_lt_2 q_lt_3", known.points),
+        retract=_correct,
+    )
+
+
+def error_names(attitude: str, points: int) -> tuple[str, ...]:
+    """Return the names of the errors; ``attitude`` holds those of the attitude, spaced."""
+    axes = ("x", "y", "z")
+    vectors = [f"{name}_{axis}" for name in ("position", "velocity", "rate") for axis in axes]
+    features = [f"point_{i + 1}_{axis}" for i in range(points) for axis in axes]
+    return (*vectors, *attitude.split(), "k1", "k2", *features)
+
+
+def _correct(state: Array, error: Array) -> Array:
+    corrected = state + error
+    corrected[..., Q] /= np.linalg.norm(corrected[..., Q], axis=-1, keepdims=True)
+    return corrected
