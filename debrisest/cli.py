@@ -221,14 +221,15 @@ def _show_tables(
 
     wrong: list[str] = []
     for scenario in scenarios:
-        rows = _told(partial(tabulate, scenario, out, selection.runs))
-        if rows.empty:
-            print(f"{scenario.name}: no results that are up to date; run sweep", file=sys.stderr)
-            continue
-        write_tables(scenario, out, rows)
-        rows = chosen(rows, selection, scenario.any.tables.means)
-        print(render(scenario, rows, form), end="")
-        wrong += _told(partial(unexpected, scenario, rows))
+        rows, stale = _told(partial(tabulate, scenario, out, selection.runs))
+        means = scenario.any.tables.means
+        for step in stale[:1]:
+            more = f" (and {len(stale) - 1} more)" if len(stale) > 1 else ""
+            print(f"left out of the tables: {step.name}: {step.reason}{more}", file=sys.stderr)
+        if not rows.empty:
+            write_tables(scenario, out, rows)
+            print(render(scenario, chosen(rows, selection, means), form), end="")
+        wrong += unexpected(scenario, rows, partial(selection.asks_for, means=means))
     if check:
         for sentence in wrong:
             print(sentence, file=sys.stderr)
@@ -245,13 +246,21 @@ def _load(configs: list[Path], settings: Sequence[str] | None) -> list["LoadedSc
     """Load all files, telling the problems of all of them at once."""
     from debrisest.errors import UserError
     from debrisest.scenario.load import load_scenario
+    from debrisest.tables.published import published_values
 
     scenarios, problems = [], []
     for path in configs:
         try:
             scenarios.append(load_scenario(path, settings or ()))
+            published_values(scenarios[-1])
         except UserError as error:
             problems += error.problems
+    stems = [path.stem for path in configs]
+    problems += [
+        f"{path}: another scenario is called {path.stem} too; results would be mixed"
+        for path in configs
+        if stems.count(path.stem) > 1
+    ]
     if problems:
         raise UserError(problems)
     return scenarios

@@ -4,7 +4,14 @@ import json
 import multiprocessing
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    wait,
+)
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
@@ -37,6 +44,30 @@ class InProcess(Executor):
         return future
 
 
+class WorkerPool(ProcessPoolExecutor):
+    """Spawned processes that leave Ctrl-C to this one: they start with it blocked."""
+
+    def __init__(self, jobs: int) -> None:
+        super().__init__(jobs, mp_context=multiprocessing.get_context("spawn"))
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Submit as the pool does, starting workers with Ctrl-C blocked."""
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            return super().submit(fn, *args, **kwargs)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+    def __exit__(self, *error: Any) -> None:
+        """Wait for the workers, or end them where an error leaves the pool."""
+        if error[0] is None:
+            self.shutdown()
+            return
+        self.shutdown(wait=False, cancel_futures=True)
+        for process in multiprocessing.active_children():
+            process.terminate()
+
+
 @contextmanager
 def executor(jobs: int, address: str | None = None) -> Iterator[Executor]:
     """Yield an executor: this process, a pool of ``jobs`` spawned ones, or a dask cluster."""
@@ -45,22 +76,17 @@ def executor(jobs: int, address: str | None = None) -> Iterator[Executor]:
 
         with dask_executor(address) as cluster:
             yield cluster
-    elif jobs == 1:
-        yield InProcess()
     else:
-        pool = ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"))
-        try:
+        with InProcess() if jobs == 1 else WorkerPool(jobs) as pool:
             yield pool
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            for process in multiprocessing.active_children():
-                process.terminate()
-            raise
-        pool.shutdown()
 
 
 def execute(steps: Sequence[Step], pool: Executor, width: int) -> Iterator[Outcome]:
-    """Run the steps that have a reason to, each after its upstream, at most ``width`` at a time."""
+    """Run the steps that have a reason to, each after its upstream, at most ``width`` at a time.
+
+    A step that cannot write its file takes the steps that need it along; a worker that dies ends
+    the whole execution, with an outcome for what was running.
+    """
     waiting = [step for step in steps if step.reason]
     unfinished = {step.path for step in waiting}
     running: dict[Future[None], Step] = {}
@@ -68,26 +94,37 @@ def execute(steps: Sequence[Step], pool: Executor, width: int) -> Iterator[Outco
         ready = [s for s in waiting if not unfinished & {up.path for up in s.upstream}]
         for step in ready[: max(width - len(running), 0)]:
             waiting.remove(step)
-            running[pool.submit(run_step, step)] = step
+            running[_submit(pool, step)] = step
         finished, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in finished:
-            step = running.pop(future)
-            error = future.exception()
-            if error is None:
+            step, error = running.pop(future), future.exception()
+            if isinstance(error, BrokenExecutor):
+                waiting = []
+                yield Outcome(step, "a worker process was ended; run again to go on")
+            elif error is not None:
+                waiting = [w for w in waiting if step.path not in {up.path for up in w.upstream}]
+                yield Outcome(step, f"{type(error).__name__}: {error}")
+            else:
                 unfinished.discard(step.path)
                 yield Outcome(step)
-                continue
-            waiting = [w for w in waiting if step.path not in {up.path for up in w.upstream}]
-            yield Outcome(step, f"{type(error).__name__}: {error}")
+
+
+def _submit(pool: Executor, step: Step) -> Future[None]:
+    """Submit a step; a pool that is broken already gives a future that says so."""
+    try:
+        return pool.submit(run_step, step)
+    except BrokenExecutor as error:
+        broken: Future[None] = Future()
+        broken.set_exception(error)
+        return broken
 
 
 def run_step(step: Step) -> None:
     """Compute one step and write its file."""
-    if multiprocessing.parent_process() is not None:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
     stage = STAGES[step.stage]
     result = isolate(lambda data: stage.run(step.case, step.estimator, data), _read(step))
-    store.write(step.path, _with_coordinates(result, step), _attributes(step))
+    times = step.case.scenario.clock.times
+    store.write(step.path, {"time_s": times, **result}, _attributes(step))
 
 
 def failures_of(data: Data) -> dict[int, str]:
@@ -104,14 +141,6 @@ def _read(step: Step) -> Data:
     return data
 
 
-def _with_coordinates(result: Data, step: Step) -> Data:
-    """Give a file the coordinates of its axes, so that it can be read alone."""
-    if not step.upstream:
-        return result
-    times = store.read(step.upstream[0].path)["time_s"]
-    return {"time_s": times, **result}
-
-
 def _attributes(step: Step) -> dict[str, Any]:
     return {
         "stage": step.stage,
@@ -120,7 +149,7 @@ def _attributes(step: Step) -> dict[str, Any]:
         "first_run": step.first_run,
         "runs": step.runs,
         "stage_key": step.key,
-        "inputs": json.dumps(step.inputs, sort_keys=True),
+        "inputs": json.dumps(step.inputs),
         "scenario": step.case.as_yaml(),
         "seed": step.case.scenario.seed,
     }

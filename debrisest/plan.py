@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 from debrisest import store
 from debrisest.errors import UserError
 from debrisest.scenario.load import Case, LoadedScenario
+from debrisest.scenario.problems import did_you_mean
 from debrisest.stages.pipeline import STAGES, stages_of
 
 RUNS_PER_FILE = 20
@@ -54,6 +55,11 @@ class Selection:
     last_stage: str = "assess"
     force: bool = False
 
+    def asks_for(self, case: str, estimator: str, means: Container[str]) -> bool:
+        """Return whether a cell belongs to it; means belong to a selection of all cases."""
+        case_fits = self.cases is None or (case in self.cases and case not in means)
+        return case_fits and (self.estimators is None or estimator in self.estimators)
+
 
 def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step]:
     """Return every step that the selection needs, upstream first, with the reasons to run."""
@@ -71,8 +77,6 @@ def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step
 
 
 def _chosen(what: str, asked: Sequence[str] | None, known: list[str]) -> list[str]:
-    from debrisest.scenario.problems import did_you_mean
-
     for name in asked or []:
         if name not in known:
             raise UserError(f"--{what} {name}: unknown {what}; {did_you_mean(name, known)}")
@@ -108,13 +112,15 @@ class _Chunk:
         key = _key(inputs, [step.key for step in upstream])
         name = f"{stage}-{estimator}" if estimator else stage
         path = self.folder / f"{name}.{self.first:06d}.h5"
-        reason, notice = self._why(path, key, inputs, upstream)
+        found = store.inspect(path)
+        reason, notice = self._why(path, found, key, inputs, upstream)
+        held = found.attributes.get("runs", 0) if found.attributes.get("stage_key") == key else 0
         return Step(
             self.case,
             estimator,
             stage,
             self.first,
-            self.runs,
+            max(self.runs, held) if self.selection.force else self.runs,
             path,
             upstream,
             inputs,
@@ -124,10 +130,14 @@ class _Chunk:
         )
 
     def _why(
-        self, path: Path, key: str, inputs: dict[str, Any], upstream: tuple[Step, ...]
+        self,
+        path: Path,
+        found: store.Checkpoint,
+        key: str,
+        inputs: dict[str, Any],
+        upstream: tuple[Step, ...],
     ) -> tuple[str, str]:
         """Return why the step has to run, and a notice where a file is given up for it."""
-        found = store.inspect(path)
         if found.condition is store.Condition.FOREIGN:
             raise UserError(
                 f"{path} is {found.condition.value}; "
@@ -157,14 +167,16 @@ def _within(stage: str, last: str) -> bool:
 
 
 def _key(inputs: dict[str, Any], upstream: list[str]) -> str:
-    text = json.dumps([inputs, upstream], sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()
+    """Hash inputs in their order, since the order of features and of sensors matters."""
+    return hashlib.sha256(json.dumps([inputs, upstream]).encode()).hexdigest()
 
 
 def _difference(before: dict[str, Any], now: dict[str, Any]) -> str:
     """Return the first keys whose values differ, with both values."""
     was, now_is = _flat(before), _flat(now)
     changed = [key for key in was | now_is if was.get(key) != now_is.get(key)]
+    if not changed and list(was) != list(now_is):
+        return "the order of its parts changed"
     if not changed:
         return "an earlier stage was computed anew"
     told = [f"{key} was {was.get(key)}, is {now_is.get(key)}" for key in changed[:3]]

@@ -5,11 +5,14 @@ checksums. Datasets are flat float64 (names are text) with units and dimension s
 h5py and xarray (``engine="h5netcdf"``) read them without this package.
 """
 
+import json
 import os
 import socket
+from collections.abc import Container, Mapping
 from datetime import UTC, datetime
 from enum import Enum
 from functools import cache
+from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -49,7 +52,7 @@ def write(path: Path, data: Data, attributes: dict[str, Any]) -> None:
     temporary = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.tmp")
     try:
         with h5py.File(temporary, "w", libver="latest", track_order=True) as file:
-            _write_attributes(file, attributes)
+            _write_attributes(file, attributes, data)
             _write_data(file, data)
         _synchronise(temporary)
         os.replace(temporary, path)
@@ -62,6 +65,8 @@ def inspect(path: Path) -> Checkpoint:
     """Return what a path holds; every checksum is verified."""
     if not path.exists():
         return Checkpoint(Condition.MISSING)
+    if not path.is_file():
+        return Checkpoint(Condition.FOREIGN)
     with path.open("rb") as file:
         start = file.read(len(_HDF5_SIGNATURE))
     if start != _HDF5_SIGNATURE[: len(start)]:
@@ -69,28 +74,30 @@ def inspect(path: Path) -> Checkpoint:
     try:
         with h5py.File(path, "r") as file:
             attributes = dict(file.attrs)
-            if attributes.get("format") != FORMAT:
+            if not isinstance(found := attributes.get("format"), str) or found != FORMAT:
                 return Checkpoint(Condition.FOREIGN)
             if attributes.get("schema_version") != SCHEMA_VERSION:
                 return Checkpoint(Condition.OTHER_VERSION, attributes)
+            texts = {name: dataset[()] for name, dataset in file.items() if _is_text(dataset)}
+            if attributes.pop("text_checksum") != _checksum(attributes, texts):
+                return Checkpoint(Condition.DAMAGED)
             for dataset in file.values():
                 dataset[()]
-    except (OSError, RuntimeError, KeyError):
+    except Exception:
         return Checkpoint(Condition.DAMAGED)
     return Checkpoint(Condition.WHOLE, attributes)
 
 
-def read(path: Path, runs: int | None = None) -> Data:
-    """Return the datasets of a whole checkpoint, of the first ``runs`` runs."""
+def read(path: Path, runs: int | None = None, names: Container[str] = VOCABULARY) -> Data:
+    """Return the named datasets of a whole checkpoint, of the first ``runs`` runs."""
     data: Data = {}
     with h5py.File(path, "r") as file:
         for name, dataset in file.items():
-            if name not in VOCABULARY:
+            if name not in VOCABULARY or name not in names:
                 continue
             has_runs = VOCABULARY[name].axes[0] == "run"
             value = dataset[:runs] if has_runs else dataset[()]
-            text = h5py.check_string_dtype(dataset.dtype) is not None
-            data[name] = np.array([t.decode() for t in value]) if text else value
+            data[name] = np.array([t.decode() for t in value]) if _is_text(dataset) else value
     return data
 
 
@@ -98,20 +105,43 @@ def remove_leftovers(folder: Path) -> None:
     """Remove temporary files of processes of this machine that no longer run."""
     for path in folder.rglob(".*.tmp"):
         host, _, process = path.name.removesuffix(".tmp").rpartition(".")
-        alive = process.isdigit() and os.path.exists(f"/proc/{process}")
-        if host.endswith(socket.gethostname()) and not alive:
+        if host.endswith(f".{socket.gethostname()}") and not _runs(process):
             path.unlink(missing_ok=True)
 
 
-def _write_attributes(file: Any, attributes: dict[str, Any]) -> None:
-    written = {
+def _runs(process: str) -> bool:
+    """Return whether a process is there and not a zombie."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except (OSError, IndexError):
+        return False
+    return state not in "ZX"
+
+
+def _is_text(dataset: Any) -> bool:
+    return h5py.check_string_dtype(dataset.dtype) is not None
+
+
+def _checksum(attributes: dict[str, Any], texts: Mapping[str, Any]) -> str:
+    """Return a checksum of what HDF5 itself gives none: texts and text attributes."""
+    content = {name: str(value) for name, value in attributes.items()}
+    content |= {
+        f"dataset {name}": repr([t if isinstance(t, str) else t.decode() for t in value])
+        for name, value in texts.items()
+    }
+    return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _write_attributes(file: Any, attributes: dict[str, Any], data: Data) -> None:
+    texts = {name: value.tolist() for name, value in data.items() if value.dtype.kind in "US"}
+    written = attributes | {
         "format": FORMAT,
         "schema_version": SCHEMA_VERSION,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "software": _software(),
         "commit": _commit(),
     }
-    file.attrs.update(written | attributes)
+    file.attrs.update(written | {"text_checksum": _checksum(written, texts)})
 
 
 def _write_data(file: Any, data: Data) -> None:

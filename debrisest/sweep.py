@@ -1,6 +1,6 @@
 """Bring scenarios up to date: plan, run what has a reason to run, tell what happened."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,28 +37,30 @@ def bring_up_to_date(
         for step in due:
             if step.notice:
                 told.say(step.notice)
-        if due:
-            _run(steps, machine, told)
-    return _failures(steps)
+        errors = _run(steps, machine, told) if due else {}
+    return errors | _failed_runs([step for step in steps if step.name not in errors])
 
 
-def _run(steps: list[Step], machine: Machine, told: Progress) -> None:
+def _run(steps: list[Step], machine: Machine, told: Progress) -> dict[str, str]:
+    """Run what is due; return the steps that wrote no file, with reasons."""
+    errors: dict[str, str] = {}
     with executor(machine.jobs, machine.cluster) as pool:
         for outcome in execute(steps, pool, machine.jobs):
             told.done(outcome.step.name)
             if outcome.error:
-                told.say(f"{outcome.step.name}: no result: {outcome.error}")
+                errors[outcome.step.name] = outcome.error
+    return errors
 
 
-def _failures(steps: list[Step]) -> dict[str, str]:
-    """Return the failed runs of all files, by the name of the first step that failed."""
+def _failed_runs(steps: list[Step]) -> dict[str, str]:
+    """Return the failed runs of all files, by the name of the first stage that failed."""
     failures: dict[str, str] = {}
     seen: set[tuple[str, str, str, int]] = set()
     for step in steps:
         if not step.path.exists():
-            failures[step.name] = "its file could not be written"
             continue
-        for run, why in failures_of(store.read(step.path, step.runs)).items():
+        found = failures_of(store.read(step.path, step.runs, names=("run", "failure")))
+        for run, why in found.items():
             own = (step.case.scenario_name, step.case.name, step.estimator, run)
             if own in seen or (*own[:2], "", run) in seen:
                 continue
@@ -67,18 +69,21 @@ def _failures(steps: list[Step]) -> dict[str, str]:
     return failures
 
 
-def tabulate(scenario: LoadedScenario, out: Path, runs: int | None) -> pd.DataFrame:
-    """Return the cells of all results that are up to date, whatever was asked for last."""
-    return cells(scenario, load_results(plan(scenario, out, Selection(runs))))
+def tabulate(
+    scenario: LoadedScenario, out: Path, runs: int | None
+) -> tuple[pd.DataFrame, list[Step]]:
+    """Return the cells of all results that are up to date, and the results that are not."""
+    steps = [step for step in plan(scenario, out, Selection(runs)) if step.stage == "assess"]
+    return cells(scenario, load_results(steps)), [step for step in steps if step.reason]
 
 
-def chosen(rows: pd.DataFrame, selection: Selection, means: Iterable[str]) -> pd.DataFrame:
-    """Return the cells that a selection asks for; means go with a selection of all cases."""
-    if selection.estimators:
-        rows = rows[rows["estimator"].isin(selection.estimators)]
-    if selection.cases:
-        rows = rows[rows["case"].isin(selection.cases) & ~rows["case"].isin(list(means))]
-    return rows
+def chosen(rows: pd.DataFrame, selection: Selection, means: Container[str]) -> pd.DataFrame:
+    """Return the cells that a selection asks for."""
+    keep = [
+        selection.asks_for(case, estimator, means)
+        for case, estimator in zip(rows["case"], rows["estimator"])
+    ]
+    return rows[keep]
 
 
 def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> None:

@@ -114,7 +114,6 @@ def test_a_whole_chunk_that_fails_leaves_the_others(
     assert (rows["verdict"].isin(["not reproduced", "unpublished"])).all()
 
 
-@pytest.mark.xfail(strict=True, reason="KeyError: 'time_s' of a simulation without a single run")
 def test_a_whole_chunk_that_cannot_be_simulated(
     small: Path, tmp_path: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -125,7 +124,6 @@ def test_a_whole_chunk_that_cannot_be_simulated(
     assert (cells(tmp_path / "out")["failed"] == 20).all()
 
 
-@pytest.mark.xfail(strict=True, reason="a cell whose runs all failed is left out of the tables")
 def test_when_every_run_fails_the_cells_say_so(
     small: Path, tmp_path: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -139,7 +137,6 @@ def test_when_every_run_fails_the_cells_say_so(
     assert rows["verdict"].iloc[0] == "not reproduced"
 
 
-@pytest.mark.xfail(strict=True, reason="a cell that is not there is not an unexpected verdict")
 def test_a_check_misses_the_cells_that_are_not_there(
     small: Path, swept: Path, cli: Callable
 ) -> None:
@@ -160,7 +157,6 @@ def test_a_file_that_cannot_be_written(
     assert "simulate, runs 0-2: no result: OSError: [Errno 28] No space left" in result.stderr
 
 
-@pytest.mark.xfail(strict=True, reason="an old file in the place of one that failed counts as good")
 def test_an_old_file_does_not_hide_a_step_that_failed(
     small: Path, swept: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -168,7 +164,6 @@ def test_an_old_file_does_not_hide_a_step_that_failed(
     assert sweep(small, swept, *ONE, "--set", "seed=8").exit_code == 1
 
 
-@pytest.mark.xfail(strict=True, reason="a damaged file that could not be replaced is read: OSError")
 def test_a_damaged_file_that_cannot_be_replaced(
     small: Path, swept: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -61,7 +61,6 @@ def test_killed_at_several_moments(
     assert {name for name in files(out) if not name.endswith(".tmp")} == files(reference)
 
 
-@pytest.mark.xfail(strict=True, reason="BrokenProcessPool leaves submit as a trace")
 def test_a_killed_worker_is_told_in_words(small: Path, tmp_path: Path, process: Callable) -> None:
     out = tmp_path / "out"
     running = process("sweep", small, "--out", out, "--jobs", 2, "--runs", 60)
@@ -122,10 +121,7 @@ def test_ctrl_c_in_process(
     assert tables(tmp_path / "out") == tables(reference)
 
 
-STARTING = pytest.mark.xfail(strict=False, reason="a starting worker may print its trace: a race")
-
-
-@pytest.mark.parametrize("moment", ["running", pytest.param("starting", marks=STARTING)])
+@pytest.mark.parametrize("moment", ["running", "starting"])
 def test_ctrl_c_of_the_whole_group(
     moment: str, small: Path, tmp_path: Path, process: Callable
 ) -> None:
@@ -338,7 +334,6 @@ def test_a_change_runs_what_depends_on_it(
     assert reason in dry.stdout
 
 
-@pytest.mark.xfail(strict=True, reason="the key of a stage is made of sorted mappings")
 def test_the_order_of_the_features_is_part_of_the_scenario(
     swept: Path, small: Path, sweep: Callable
 ) -> None:
@@ -370,7 +365,6 @@ def test_force_runs_everything_again(
     assert tables(swept) == tables(reference)
 
 
-@pytest.mark.xfail(strict=True, reason="a forced step with fewer runs gives up finished runs")
 def test_force_with_fewer_runs_deletes_no_run(
     swept: Path, small: Path, sweep: Callable, data_of: Callable
 ) -> None:

@@ -172,7 +172,6 @@ def test_leftovers_of_dead_processes_are_removed(file: Path, tmp_path: Path) -> 
     assert set(file.parent.iterdir()) == {file, alive, foreign, own}
 
 
-@pytest.mark.xfail(strict=True, reason="the host is compared by the end of its name")
 def test_leftovers_of_a_host_whose_name_ends_alike_stay(file: Path, tmp_path: Path) -> None:
     other = file.with_name(f".{file.name}.big{socket.gethostname()}.{dead_process()}.tmp")
     other.write_bytes(b"half")
@@ -180,7 +179,6 @@ def test_leftovers_of_a_host_whose_name_ends_alike_stay(file: Path, tmp_path: Pa
     assert other.exists()
 
 
-@pytest.mark.xfail(strict=True, reason="a killed process that nobody waits for counts as running")
 def test_leftovers_of_zombies_are_removed(file: Path, tmp_path: Path) -> None:
     zombie = subprocess.Popen([sys.executable, "-c", ""], stdout=subprocess.PIPE)
     with zombie:
@@ -252,7 +250,6 @@ def flipped_everywhere(file: Path, step: int) -> Any:
         yield at
 
 
-@pytest.mark.xfail(strict=True, reason="TypeError and others leave inspect")
 def test_flipped_bytes_anywhere_give_no_wrong_number(file: Path, same_data: Callable) -> None:
     original = {k: v for k, v in store.read(file).items() if v.dtype.kind == "f"}
     for at in flipped_everywhere(file, 97):
@@ -264,7 +261,6 @@ def test_flipped_bytes_anywhere_give_no_wrong_number(file: Path, same_data: Call
 TEXTS = [b"nozzle", "Flügel".encode(), b"ValueError: no", b"0123456789abcdef", b'{"noise_m"']
 
 
-@pytest.mark.xfail(strict=True, reason="texts lie in the global heap, which has no checksum")
 @pytest.mark.parametrize("text", TEXTS)
 @pytest.mark.parametrize("mask", [0x01, 0x80])
 def test_flipped_bytes_of_texts_are_found(text: bytes, mask: int, file: Path) -> None:
@@ -274,7 +270,6 @@ def test_flipped_bytes_of_texts_are_found(text: bytes, mask: int, file: Path) ->
     assert store.inspect(file).condition is Condition.DAMAGED
 
 
-@pytest.mark.xfail(strict=True, reason="JSONDecodeError from a damaged attribute 'inputs'")
 def test_a_damaged_attribute_gives_no_trace(swept: Path, small: Path, sweep: Callable) -> None:
     path = swept / "small" / "slow" / "filter-triad.000000.h5"
     content = path.read_bytes()
@@ -355,21 +350,9 @@ FOREIGN = {
         *(text, picture, folder),
     )
 }
-TRACES = {
-    "other_hdf5_with_format": "ValueError: an array as attribute 'format'",
-    "folder": "IsADirectoryError",
-}
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(
-            n, marks=pytest.mark.xfail(strict=True, reason=TRACES[n]) if n in TRACES else []
-        )
-        for n in FOREIGN
-    ],
-)
+@pytest.mark.parametrize("name", FOREIGN)
 def test_a_foreign_file_is_refused_and_left_alone(
     name: str, swept: Path, small: Path, sweep: Callable
 ) -> None:

@@ -46,15 +46,29 @@ class History(NamedTuple):
     kept: IntArray
     """Epochs of `covariance`, ascending, the last epoch always among them."""
     nis: Array
-    """Normalised innovation squared, (run, time)."""
+    """Normalised innovation squared of the components used, (run, time)."""
     nis_dof: IntArray
-    """Number of measured components, (run, time)."""
+    """Number of components used, (run, time)."""
     repairs: IntArray
     """How often a covariance without a Cholesky factor was repaired, (run,)."""
     status: IntArray
     """`FilterStatus` codes, (run,)."""
     diverged_at: IntArray
     """Epoch of divergence, -1 if none, (run,)."""
+    iterations: IntArray
+    """Linearisations of the update, 1 where the filter does not iterate, (run, time)."""
+    rejected: IntArray
+    """Number of measured components that a gate kept out, (run, time)."""
+    reopened: IntArray
+    """How often a gate that had locked the run out was opened, (run,)."""
+
+
+class Tally(NamedTuple):
+    """What an update may count beside its result, each (run,)."""
+
+    iterations: IntArray
+    rejected: IntArray
+    reopened: IntArray
 
 
 class HistoryWriter:
@@ -84,7 +98,15 @@ class HistoryWriter:
             repairs=np.zeros(runs, dtype=np.int64),
             status=np.where(self._alive, FilterStatus.FINISHED, FilterStatus.NO_START),
             diverged_at=np.where(self._alive, -1, 0),
+            iterations=np.ones((runs, epochs), dtype=np.int64),
+            rejected=np.zeros((runs, epochs), dtype=np.int64),
+            reopened=np.zeros(runs, dtype=np.int64),
         )
+
+    @property
+    def alive(self) -> BoolArray:
+        """Runs that have not diverged yet, (run,)."""
+        return self._alive
 
     def live(self, state: Array, covariance: Array) -> tuple[Array, Array]:
         """State and covariance to compute with: those of diverged runs replaced."""
@@ -96,7 +118,14 @@ class HistoryWriter:
         )
 
     def record(
-        self, k: int, state: Array, covariance: Array, nis: Array, dof: IntArray, repairs: IntArray
+        self,
+        k: int,
+        state: Array,
+        covariance: Array,
+        nis: Array,
+        dof: IntArray,
+        repairs: IntArray,
+        tally: Tally | None = None,
     ) -> None:
         """Store the posterior of epoch k, and find the runs that have diverged."""
         if not np.isfinite(state.sum() + covariance.sum()):
@@ -107,6 +136,10 @@ class HistoryWriter:
         history.nis[:, k] = nis
         history.nis_dof[:, k] = dof
         history.repairs[self._alive] += repairs[self._alive]
+        if tally is not None:
+            history.iterations[:, k] = tally.iterations
+            history.rejected[:, k] = tally.rejected
+            history.reopened[self._alive] += tally.reopened[self._alive]
         if k in self._slot:
             history.covariance[:, self._slot[k]] = covariance
 
@@ -117,7 +150,8 @@ class HistoryWriter:
         lost = (start >= 0) & (np.arange(history.state.shape[1]) >= start)
         for values in (history.state, history.sigma, history.nis):
             values[lost] = np.nan
-        history.nis_dof[lost] = 0
+        for counts in (history.nis_dof, history.iterations, history.rejected):
+            counts[lost] = 0
         history.covariance[lost[:, history.kept]] = np.nan
         return history
 

@@ -30,6 +30,12 @@ class Model(NamedTuple):
       are added.
     * `innovation(y, predicted)` may resolve an ambiguity of the measurement first, for instance
       the sign of a quaternion. A NaN component of `y` (not observed) must not spoil the others.
+    * `process_jacobian(x, k)` (..., n_e, n_e) and `measurement_jacobian(x, k)` (..., m, n_e) are
+      the derivatives of `difference(process(retract(x, e), k), process(x, k))` and of
+      `measurement(retract(x, e), k)` by e at zero. They get x (run, n); leading axes of a constant
+      one may be left out. A filter that needs one that is missing differentiates numerically.
+    * `gate_groups` gives every measurement component the number of the group with which a gate
+      accepts or rejects it; without it, every component is judged alone.
     """
 
     process: Callable[[Array, int], Array]
@@ -42,3 +48,6 @@ class Model(NamedTuple):
     retract: Callable[[Array, Array], Array] = add
     difference: Callable[[Array, Array], Array] = subtract
     innovation: Callable[[Array, Array], Array] = subtract
+    process_jacobian: Callable[[Array, int], Array] | None = None
+    measurement_jacobian: Callable[[Array, int], Array] | None = None
+    gate_groups: tuple[int, ...] | None = None

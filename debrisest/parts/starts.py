@@ -21,7 +21,7 @@ class FirstSamples(StartPart):
 
     needs = ("q_if",)
     kind: Literal["first_samples"]
-    samples: Annotated[int, Field(ge=2)] = 15
+    samples: Annotated[int, Field(ge=2)] = 5
     variance: Variances
 
     def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:

@@ -3,7 +3,7 @@
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Discriminator, Field, Tag
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude.points import features_frame
@@ -37,8 +37,14 @@ def inertia_tensor(rows: list[float] | list[list[float]]) -> Array:
     return np.diag(given) if given.ndim == 1 else given
 
 
+def _rows_or_moments(given: object) -> str:
+    return "rows" if isinstance(given, list) and given and isinstance(given[0], list) else "moments"
+
+
 Inertia = Annotated[
-    Vector3 | Annotated[list[Vector3], Field(min_length=3, max_length=3)],
+    Annotated[Vector3, Tag("moments")]
+    | Annotated[list[Vector3], Field(min_length=3, max_length=3), Tag("rows")],
+    Discriminator(_rows_or_moments),
     AfterValidator(_possible_inertia),
 ]
 

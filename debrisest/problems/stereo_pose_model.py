@@ -28,6 +28,7 @@ from debrisest.sensors import stereo
 POSITION, VELOCITY, RATE = slice(0, 3), slice(3, 6), slice(6, 9)
 Q, K, POINTS = slice(9, 13), slice(13, 15), slice(15, None)
 
+
 class Shown(NamedTuple):
     """Which groups of measurements there are."""
 
@@ -35,6 +36,9 @@ class Shown(NamedTuple):
     flow: bool = True
     disparity: bool = True
     acceleration: bool = False
+
+
+EVERYTHING_OF_CAMERAS = Shown()
 
 
 class Setup(NamedTuple):
@@ -45,7 +49,7 @@ class Setup(NamedTuple):
     step: float
     points: int = 5
     baseline: float = 1.0
-    shown: Shown = Shown()
+    shown: Shown = EVERYTHING_OF_CAMERAS
     raw_rotation: bool = False
 
     @property
@@ -74,11 +78,11 @@ def setup(
     true_anomaly: float,
     points: int = 5,
     baseline: float = 1.0,
-    shown: Shown = Shown(),
+    shown: Shown = EVERYTHING_OF_CAMERAS,
     raw_rotation: bool = False,
 ) -> Setup:
     """Return the setup of ``epochs`` epochs (the first at the true anomaly), SI and rad."""
-    times = 0.5 * step * np.arange(2 * epochs - 1)
+    times = np.arange(2 * epochs - 1, dtype=np.float64) * (0.5 * step)
     leader = leader_orbit(times, semi_major_axis, eccentricity, true_anomaly)
     return Setup(leader, step, points, baseline, shown, raw_rotation)
 

@@ -80,7 +80,7 @@ Integrator = Callable[[Array, Array, Array, float], tuple[Array, Array]]
 
 def process(state: Array, step: float, integrator: Integrator) -> Array:
     """Return the states (..., 14) after ``step`` seconds; offset and moments do not change."""
-    following = np.ascontiguousarray(np.moveaxis(state, -1, 0))
+    following = np.array(np.moveaxis(state, -1, 0), order="C")
     moments = following[MOMENTS]
     j1, j2, j3 = np.copysign(np.maximum(np.abs(moments), LEAST_MOMENT), moments)
     ratio = np.stack([(j2 - j3) / j1, (j3 - j1) / j2, (j1 - j2) / j3])

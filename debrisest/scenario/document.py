@@ -76,6 +76,8 @@ def parse(text: str, source: str) -> tuple[Document, list[Problem]]:
         value = _construct(loader, node, (), places, problems, source)
     except yaml.MarkedYAMLError as error:
         return Document({}, places), [Problem(_place(source, error.problem_mark), _said(error))]
+    except RecursionError:
+        return Document({}, places), [Problem(start, "not valid YAML: nested too deeply")]
     except yaml.YAMLError as error:
         return Document({}, places), [Problem(start, f"not a YAML text: {error}".split("\n")[0])]
     if not isinstance(value, dict):
@@ -128,7 +130,7 @@ def _construct(
             for index, item in enumerate(node.value)
         ]
     if not isinstance(node, yaml.MappingNode):
-        return None if node is None else loader.construct_object(node, deep=True)
+        return None if node is None else _scalar(loader, node, problems, source)
     value: dict[str, Any] = {}
     for key_node, value_node in node.value:
         place, key = _place(source, key_node.start_mark), str(key_node.value)
@@ -139,6 +141,16 @@ def _construct(
         places[(*path, key)] = place
         value[key] = _construct(loader, value_node, (*path, key), places, problems, source)
     return value
+
+
+def _scalar(loader: _Loader, node: Any, problems: list[Problem], source: str) -> Any:
+    try:
+        return loader.construct_object(node, deep=True)
+    except (ValueError, KeyError, AttributeError):
+        tag = node.tag.rpartition(":")[2]
+        place = _place(source, node.start_mark)
+        problems.append(Problem(place, f"{str(node.value)[:40]!r} is not a value of type {tag}"))
+        return None
 
 
 def _place(source: str, mark: Any) -> Place:

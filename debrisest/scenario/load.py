@@ -2,7 +2,7 @@
 
 import itertools
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from pathlib import Path
@@ -12,6 +12,7 @@ import yaml
 from pydantic import ValidationError
 
 from debrisest.errors import UserError
+from debrisest.scenario.checks import file_problems, scenario_problems
 from debrisest.scenario.document import (
     Document,
     KeyPath,
@@ -26,6 +27,9 @@ from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
 
 NOMINAL = "nominal"
 """The case of a scenario that has neither cases nor a grid."""
+
+_NAMED = ("observers", "sensors", "estimators")
+"""Keys whose entries have names of the user's choice."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +79,7 @@ def load_scenario(path: Path, overrides: Sequence[str] = ()) -> LoadedScenario:
     document, problems = parse(_read(path), str(path))
     if problems and not document.value:
         raise UserError(map(str, problems))
-    laid_on = [_override(text) for text in overrides]
+    laid_on = [_override(text, document) for text in overrides]
     own: dict[str, Any] = {k: v for k, v in document.value.items() if k in ("cases", "grid")}
     listed, found = _validated(Document(own, document.places), CasesAndGrid)
     problems += found
@@ -85,9 +89,11 @@ def load_scenario(path: Path, overrides: Sequence[str] = ()) -> LoadedScenario:
         scenario, found = _validated(complete, scenario_model())
         problems += found
         if scenario is not None:
+            problems += _placed(complete, scenario_problems(scenario))
             cases[name] = Case(path.stem, name, complete.value)
     if not problems:
-        problems = _unknown_cases(document, cases)
+        scenarios = {name: case.scenario for name, case in cases.items()}
+        problems = _placed(document, file_problems(scenarios))
     if problems:
         raise UserError(dict.fromkeys(map(str, problems)))
     return LoadedScenario(path, cases)
@@ -110,7 +116,7 @@ def _read(path: Path) -> str:
         ) from None
 
 
-def _override(text: str) -> Document:
+def _override(text: str, document: Document) -> Document:
     key, equals, value = text.partition("=")
     if not equals or not all(key.split(".")):
         raise UserError(f"--set {text}: expected key.path=value, such as runs=5")
@@ -120,6 +126,10 @@ def _override(text: str) -> Document:
         raise UserError(f"{place}: the value is not valid YAML")
     if key.split(".")[0] in ("cases", "grid"):
         raise UserError(f"{place}: cases and grid cannot be set, since --set goes on every case")
+    role, *named = key.split(".")
+    known = document.value.get(role)
+    if role in _NAMED and isinstance(known, dict) and named and named[0] not in known:
+        raise UserError(f"{place}: unknown name {named[0]!r}; {did_you_mean(named[0], known)}")
     return _nested(tuple(key.split(".")), parsed.value["value"], place)
 
 
@@ -128,6 +138,13 @@ def _validated(document: Document, model: Any) -> tuple[Any, list[Problem]]:
         return model.model_validate(document.value), []
     except ValidationError as error:
         return None, problems_of(error, document, model)
+
+
+def _placed(document: Document, found: Iterable[tuple[KeyPath, str]]) -> list[Problem]:
+    return [
+        Problem(document.place(path), f"{'.'.join(map(str, path))}: {message}")
+        for path, message in found
+    ]
 
 
 def _case_documents(document: Document, listed: CasesAndGrid) -> dict[str, Document]:
@@ -140,6 +157,9 @@ def _case_documents(document: Document, listed: CasesAndGrid) -> dict[str, Docum
     if not listed.grid:
         return cases or {NOMINAL: base}
     points = [_grid_point(document, point) for point in _combinations(listed.grid)]
+    names = [name for name, _ in points]
+    if len(set(names)) < len(names):
+        raise UserError(f"{document.place(('grid',))}: two points of the grid have one name")
     if not cases:
         return {name: merge(base, over) for name, over in points}
     return {
@@ -170,22 +190,3 @@ def _nested(path: tuple[str, ...], value: Any, place: Place) -> Document:
     for name in reversed(path):
         value = {name: value}
     return Document(value, places)
-
-
-def _unknown_cases(document: Document, cases: dict[str, Case]) -> list[Problem]:
-    """Return the means and tables that name a case which does not exist."""
-    tables = next(iter(cases.values())).scenario.tables
-    named: list[tuple[KeyPath, str]] = [
-        (("tables", "means", mean), case) for mean, of in tables.means.items() for case in of
-    ]
-    named += [
-        (("tables", "layout", index, "cases"), case)
-        for index, table in enumerate(tables.layout)
-        for case in table.cases or []
-        if case not in tables.means
-    ]
-    return [
-        Problem(document.place(path), f"unknown case {case!r}; {did_you_mean(case, cases)}")
-        for path, case in named
-        if case not in cases
-    ]

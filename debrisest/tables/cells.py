@@ -1,8 +1,9 @@
 """The cells of a scenario's tables: measured figures beside published values."""
 
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,9 +12,9 @@ from debrisest.arrays import Array, BoolArray
 from debrisest.assessment.statistics import bootstrap
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.schema import Table, Tables
-from debrisest.tables.published import CellKey, Published, load_published
+from debrisest.tables.published import CellKey, Published, published_values
 from debrisest.tables.results import Result
-from debrisest.tables.verdict import interval_meets, verdict
+from debrisest.tables.verdict import Verdict, interval_meets, verdict
 from debrisest.vocabulary import VOCABULARY
 
 COLUMNS = [
@@ -23,12 +24,6 @@ COLUMNS = [
 ]
 
 Results = Mapping[tuple[str, str], Result]
-
-
-def published_values(scenario: LoadedScenario) -> dict[CellKey, Published]:
-    """Return the published values that the scenario names, if it names any."""
-    file = scenario.any.tables.published
-    return load_published(scenario.path.parent / file) if file else {}
 
 
 def cells(scenario: LoadedScenario, results: Results) -> pd.DataFrame:
@@ -42,25 +37,39 @@ def cells(scenario: LoadedScenario, results: Results) -> pd.DataFrame:
     return pd.DataFrame([row for row in rows if row is not None], columns=COLUMNS)
 
 
-def unexpected(scenario: LoadedScenario, rows: pd.DataFrame) -> list[str]:
-    """Return a sentence for each cell whose verdict is not the expected one."""
-    published = published_values(scenario)
+def unexpected(
+    scenario: LoadedScenario, rows: pd.DataFrame, asked: Callable[[str, str], bool]
+) -> list[str]:
+    """Return a sentence for each cell that is asked for and is not there, or not as expected."""
     found = []
-    for row in rows.to_dict("records"):
-        key = CellKey(*(row[field] for field in CellKey._fields))
-        entry = published.get(key)
-        expected = entry.expected.get(row["estimator"], []) if entry else []
-        if entry is None or not expected or row["verdict"] in expected:
-            continue
-        interval = row["ci_low"], row["ci_high"]
-        if any(interval_meets(v, *interval, entry.value, entry.factor) for v in expected):
-            continue
-        found.append(
-            f"Table {key.table}, case {key.case}, {row['estimator']}, {key.quantity}, "
-            f"{key.window}: {row['verdict']} ({row['measured']:.4g} [{row['ci_low']:.4g}, "
-            f"{row['ci_high']:.4g}], published {entry.value:.4g}), expected {' or '.join(expected)}"
-        )
+    present = {
+        (CellKey(*(row[field] for field in CellKey._fields)), row["estimator"]): row
+        for row in rows.to_dict("records")
+    }
+    for key, entry in published_values(scenario).items():
+        for estimator, expected in entry.expected.items():
+            if not asked(key.case, estimator):
+                continue
+            row = present.get((key, estimator))
+            said = "no result" if row is None else _disagreement(row, entry, expected)
+            if said:
+                found.append(
+                    f"Table {key.table}, case {key.case}, {estimator}, {key.quantity} "
+                    f"({key.statistic}, {key.window}): {said}, expected {' or '.join(expected)}"
+                )
     return found
+
+
+def _disagreement(row: Mapping[Hashable, Any], entry: Published, expected: list[Verdict]) -> str:
+    """Return what speaks against the expected verdicts: not the cell, nor its interval."""
+    interval = row["ci_low"], row["ci_high"]
+    meets = (interval_meets(v, *interval, entry.value, entry.factor) for v in expected)
+    if row["verdict"] in expected or any(meets):
+        return ""
+    return (
+        f"{row['verdict']}, {row['measured']:.4g} [{row['ci_low']:.4g}, {row['ci_high']:.4g}] "
+        f"against {entry.value:.4g}"
+    )
 
 
 def _keys(table: Table, scenario: LoadedScenario) -> Iterator[tuple[CellKey, str]]:
@@ -84,7 +93,7 @@ def _row(
     members = tables.means.get(key.case, [key.case])
     parts = [results.get((case, estimator)) for case in members]
     dataset = _dataset(table, key.quantity)
-    present = [part for part in parts if part is not None and dataset in part.errors]
+    present = [part for part in parts if part is not None and part.shows(dataset)]
     if not present or len(present) < len(parts):
         return None
     groups = [_figures(part, key, table, tables) for part in present]

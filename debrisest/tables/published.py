@@ -5,10 +5,12 @@ with its expected verdict, alternatives separated by ``|``. ``factor`` is the to
 """
 
 import csv
+from math import isfinite
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from debrisest.errors import UserError
+from debrisest.scenario.load import LoadedScenario
 from debrisest.tables.verdict import Verdict
 
 _COLUMNS = ("table", "case", "quantity", "statistic", "window", "published", "factor")
@@ -32,10 +34,16 @@ class Published(NamedTuple):
     expected: dict[str, list[Verdict]]
 
 
+def published_values(scenario: LoadedScenario) -> dict[CellKey, Published]:
+    """Return the published values that a scenario names, if it names any."""
+    file = scenario.any.tables.published
+    return load_published(scenario.path.parent / file) if file else {}
+
+
 def load_published(path: Path) -> dict[CellKey, Published]:
     """Return the published values by cell, or raise UserError with the line that is wrong."""
     try:
-        with path.open(newline="", encoding="utf-8") as file:
+        with path.open(newline="", encoding="utf-8-sig") as file:
             rows = csv.DictReader(file)
             fields = rows.fieldnames or []
             missing = [column for column in _COLUMNS if column not in fields]
@@ -44,12 +52,18 @@ def load_published(path: Path) -> dict[CellKey, Published]:
             return dict(_parse(path, rows.line_num, row) for row in rows)
     except OSError as error:
         raise UserError(f"{path}: published values cannot be read: {error.strerror}") from None
+    except (UnicodeDecodeError, csv.Error):
+        raise UserError(f"{path}: published values must be a CSV file in UTF-8") from None
 
 
-def _parse(path: Path, line: int, row: dict[str, str]) -> tuple[CellKey, Published]:
+def _parse(path: Path, line: int, row: dict[Any, Any]) -> tuple[CellKey, Published]:
+    if None in row or None in row.values():
+        raise UserError(f"{path}:{line}: this row has more or fewer fields than the first line")
     key = CellKey(*(row[column] for column in CellKey._fields))
     try:
         value, factor = float(row["published"]), float(row["factor"])
+        if not (isfinite(value) and isfinite(factor) and value > 0 and factor >= 1):
+            raise ValueError("published must be positive and factor at least 1")
         expected = {
             name: [Verdict(word) for word in words.split("|")]
             for name, words in row.items()

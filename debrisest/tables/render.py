@@ -5,6 +5,7 @@ from collections.abc import Callable
 import pandas as pd
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from debrisest.scenario.load import LoadedScenario
@@ -24,7 +25,7 @@ def _csv(_: LoadedScenario, cells: pd.DataFrame) -> str:
 
 
 def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
-    return str(cells.to_json(orient="records", indent=1)) + "\n"
+    return str(cells.to_json(orient="records", indent=1, double_precision=15)) + "\n"
 
 
 def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
@@ -63,7 +64,8 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     console = Console(width=110)
     with console.capture() as capture:
         for sheet in sheets(scenario, cells):
-            console.print(f"\n[bold]Table {sheet.number}: {sheet.title}[/]", soft_wrap=True)
+            title = escape(f"Table {sheet.number}: {sheet.title}")
+            console.print(f"\n[bold]{title}[/]", soft_wrap=True)
             console.print(_rich_table(sheet))
         console.print(f"{LEGEND}\n", style="dim", soft_wrap=True)
     return capture.get()
@@ -72,7 +74,7 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
 def _rich_table(sheet: Sheet) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for head in sheet.heads:
-        table.add_column(head, justify="left" if head in ("case", "source") else "right")
+        table.add_column(escape(head), justify="left" if head in ("case", "source") else "right")
     previous = ""
     for row in sheet.rows:
         shown = ["" if row[0] == previous and "source" in sheet.heads else row[0], *row[1:]]
@@ -83,7 +85,7 @@ def _rich_table(sheet: Sheet) -> Table:
 
 def _coloured(text: str) -> str:
     colour = _COLOURS.get(text[-1:]) if " " in text else None
-    return f"[{colour}]{text}[/]" if colour else text
+    return f"[{colour}]{escape(text)}[/]" if colour else escape(text)
 
 
 FORMS: dict[str, Callable[[LoadedScenario, pd.DataFrame], str]] = {

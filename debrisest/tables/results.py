@@ -22,6 +22,10 @@ class Result(NamedTuple):
     failures: dict[int, str]
     runs: int
 
+    def shows(self, dataset: str) -> bool:
+        """Return whether there is a figure, or would be one if not all runs had failed."""
+        return dataset in self.errors or len(self.failures) == self.runs
+
     @property
     def good(self) -> BoolArray:
         """Return which runs (run,) gave a result."""
@@ -29,6 +33,8 @@ class Result(NamedTuple):
 
     def figures(self, dataset: str, statistic: str, window: str) -> Array:
         """Return one figure per run (run,), in the unit of the tables; NaN where it failed."""
+        if dataset not in self.errors:
+            return np.full(self.runs, np.nan)
         inside = window_mask(self.times, window_of(window, self.duration))
         return per_run(statistic, self.errors[dataset], inside) * table_scale(dataset)
 

@@ -145,7 +145,6 @@ def test_when_all_diverged_there_is_no_figure(scenario: LoadedScenario) -> None:
     assert line == "2,fast,triad,rate_1,deg/s,rmse,40-60 s,0.001,,,,,2,0,2,not reproduced"
 
 
-@pytest.mark.xfail(strict=True, reason="a run that never settles is called diverged")
 def test_a_run_that_never_settles_has_not_diverged(small: Path) -> None:
     small.write_text(small.read_text().replace("[nis_mean]", "[convergence_time]"))
     settling = Result({"convergence_time": np.array([5.0, np.nan])}, TIMES, 60.0, {}, 2)
@@ -288,13 +287,11 @@ def test_titles_with_special_characters(small: Path, swept: Path, cli: Callable)
     assert r"50 \% [bold] of a\_b \& \{c\}" in latex
 
 
-@pytest.mark.xfail(strict=True, reason="titles are read as markup on the terminal")
 def test_a_title_in_brackets_is_shown(small: Path, swept: Path, cli: Callable) -> None:
     small.write_text(small.read_text().replace("Errors after the filter", "Errors [rms]"))
     assert "Errors [rms]" in cli("table", small, "--out", swept).stdout
 
 
-@pytest.mark.xfail(strict=True, reason="pandas writes ten decimals, not ten digits")
 def test_json_keeps_the_digits_of_small_figures(scenario: LoadedScenario) -> None:
     rows = rows_of(scenario, slow_triad=result([1.23456e-9] * 3, [0.1] * 3))
     measured = [record["measured"] for record in json.loads(render(scenario, rows, "json"))]

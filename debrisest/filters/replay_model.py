@@ -1,0 +1,45 @@
+"""What the replay filter is handed: a `ReplayModel` of a system without process noise."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from debrisest.arrays import Array, IntArray
+
+
+class ReplayModel(NamedTuple):
+    """A deterministic system whose whole motion follows from its state at epoch 0.
+
+    It has two charts of errors, n_e numbers each: a *plain* one, in which the prior is Gaussian and
+    the derivatives are taken, and one of its own for each state (its *chart*), in which what is
+    measured depends nearly linearly on the errors, and in which states are corrected. Arrays have
+    the run first. "Sensitivities" are whatever numbers, one set an epoch, from which `rows` and
+    `transition` know the derivative by the state at the first epoch.
+    """
+
+    trajectory: Callable[[Array, int, int], tuple[Array, Array]]
+    """(state (run, n), first, last) -> states (run, epoch, n), sensitivities (run, epoch, ...)."""
+    rows: Callable[[Array, Array, int, IntArray], tuple[Array, Array]]
+    """(states, sensitivities, first, epochs) -> measurements (run, epoch, m), derivative
+    (run, epoch, m, n_e) by the plain errors at `first`."""
+    transition: Callable[[Array, int, int], Array]
+    """(sensitivities of epoch last (run, ...), first, last) -> plain errors of `last` by those of
+    `first`, (run, n_e, n_e)."""
+    rewind: Callable[[Array, int], Array]
+    """(state, epoch) -> state at epoch 0."""
+    chart: Callable[[Array], Array]
+    """state -> its own errors by plain errors, (run, n_e, n_e)."""
+    inverse_chart: Callable[[Array], Array]
+    """Inverse of `chart`."""
+    retract: Callable[[Array, Array], Array]
+    """(state, error in its own chart) -> state; may keep it physical."""
+    difference: Callable[[Array, Array], Array]
+    """(state, reference) -> error in the reference's own chart."""
+    plain_difference: Callable[[Array, Array], Array]
+    """(state, reference) -> plain error."""
+    start: Callable[[Array, Array, int], Array]
+    """(prior at epoch 0, measurements (run, m) of the first epoch that has any, that epoch) -> a
+    state at epoch 0 to begin with. It may be the prior itself."""
+    sigma: Array
+    """Noise of the measurements, (m,); they are independent."""
+    error_names: tuple[str, ...]
+    """Of the plain errors."""

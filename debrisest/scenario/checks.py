@@ -1,0 +1,111 @@
+"""What must fit together across the keys of a scenario, each problem with its key path."""
+
+from collections.abc import Iterator, Mapping
+
+from debrisest.catalog import CATALOG, kind_of
+from debrisest.roles import Part
+from debrisest.scenario.document import KeyPath
+from debrisest.scenario.problems import did_you_mean
+from debrisest.scenario.schema import Scenario, Tables, window_of
+
+MOST_EPOCHS = 10_000_000
+RESERVED = ("plots", "tables.csv", "tables.md", "tables.tex")
+"""Names beside the folders of the cases."""
+
+Found = Iterator[tuple[KeyPath, str]]
+
+
+def scenario_problems(scenario: Scenario) -> Found:
+    """Yield what does not fit together within one case."""
+    epochs = scenario.duration_s / scenario.step_s
+    if not 2 <= epochs <= MOST_EPOCHS:
+        yield ("step_s",), f"gives {epochs:.3g} epochs; from 2 to {MOST_EPOCHS} are possible"
+    yield from _parts_that_lack_data(scenario)
+    yield from _windows(scenario)
+
+
+def file_problems(cases: Mapping[str, Scenario]) -> Found:
+    """Yield what does not fit together between the cases of a file."""
+    first = next(iter(cases.values()))
+    for name, scenario in cases.items():
+        if name in RESERVED:
+            yield ("cases", name), "this name is taken by a file of results; choose another"
+        if list(scenario.estimators) != list(first.estimators):
+            yield ("cases", name), "all cases of a scenario must have the same estimators"
+    yield from _unknown_cases(first.tables, list(cases))
+
+
+def _parts_that_lack_data(scenario: Scenario) -> Found:
+    given: set[str] = set()
+    for path, part in _simulation(scenario):
+        yield from _lacks(path, part, given)
+    for name, estimator in scenario.estimators.items():
+        here = set(given)
+        for role in ("recovery", "start", "problem"):
+            part = getattr(estimator, role)
+            if part is not None:
+                yield from _lacks(("estimators", name, role), part, here)
+
+
+def _simulation(scenario: Scenario) -> Iterator[tuple[KeyPath, Part]]:
+    for role in ("target", "orbit", "motion"):
+        if getattr(scenario, role) is not None:
+            yield (role,), getattr(scenario, role)
+    for role in ("observers", "sensors"):
+        for name, part in getattr(scenario, role).items():
+            yield (role, name), part
+
+
+def _lacks(path: KeyPath, part: Part, given: set[str]) -> Found:
+    missing = [name for name in part.needs if name not in given]
+    if missing:
+        givers = sorted(
+            f"{role} {kind_of(giver)}"
+            for role, parts in CATALOG.items()
+            for giver in parts
+            if set(missing) & set(giver.gives)
+        )
+        yield (
+            path,
+            f"{kind_of(type(part))} needs {', '.join(missing)}, which no part before it gives; "
+            f"add one of: {', '.join(givers)}",
+        )
+    given.update(part.gives)
+
+
+def _windows(scenario: Scenario) -> Found:
+    tables, duration = scenario.tables, scenario.duration_s
+    named: list[tuple[KeyPath, str]] = [
+        (("tables", "layout", index, "windows"), window)
+        for index, table in enumerate(tables.layout)
+        for window in table.windows
+    ]
+    named += [
+        (("tables", "diverged", index, "window"), rule.window)
+        for index, rule in enumerate(tables.diverged)
+    ]
+    if tables.scored_window is not None:
+        named.append((("tables", "scored_window"), tables.scored_window))
+        if tables.scored_window in ("start", "end"):
+            yield ("tables", "scored_window"), "a span such as 900-1400 s is needed here"
+    for path, window in named:
+        if window_of(window, duration)[1] > duration:
+            yield path, f"{window} goes beyond the scenario, which lasts {duration:g} s"
+
+
+def _unknown_cases(tables: Tables, cases: list[str]) -> Found:
+    for mean, members in tables.means.items():
+        if mean in cases:
+            yield ("tables", "means", mean), "a case has this name already; choose another"
+        for case in members:
+            if case not in cases:
+                yield ("tables", "means", mean), _unknown(case, cases)
+    for index, table in enumerate(tables.layout):
+        for case in table.cases or []:
+            if case not in cases and case not in tables.means:
+                path = ("tables", "layout", index, "cases")
+                yield path, _unknown(case, [*cases, *tables.means])
+
+
+def _unknown(case: str, known: list[str]) -> str:
+    return f"unknown case {case!r}; {did_you_mean(case, known)}"
