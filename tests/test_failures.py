@@ -154,7 +154,7 @@ def test_a_file_that_cannot_be_written(
     monkeypatch.setattr(store, "write", no_room)
     result = sweep(small, tmp_path / "out", *ONE)
     assert result.exit_code == 1
-    assert "simulate, runs 0-2: no result: OSError: [Errno 28] No space left" in result.stderr
+    assert "simulate, runs 0-2 failed: OSError: [Errno 28] No space left" in result.stderr
 
 
 def test_an_old_file_does_not_hide_a_step_that_failed(

@@ -20,6 +20,7 @@ def scenario_problems(scenario: Scenario) -> Found:
     epochs = scenario.duration_s / scenario.step_s
     if not 2 <= epochs <= MOST_EPOCHS:
         yield ("step_s",), f"gives {epochs:.3g} epochs; from 2 to {MOST_EPOCHS} are possible"
+        return
     yield from _parts_that_lack_data(scenario)
     yield from _windows(scenario)
 
@@ -76,9 +77,9 @@ def _lacks(path: KeyPath, part: Part, given: set[str]) -> Found:
 def _windows(scenario: Scenario) -> Found:
     tables, duration = scenario.tables, scenario.duration_s
     named: list[tuple[KeyPath, str]] = [
-        (("tables", "layout", index, "windows"), window)
+        (("tables", "layout", index, "windows", number), window)
         for index, table in enumerate(tables.layout)
-        for window in table.windows
+        for number, window in enumerate(table.windows)
     ]
     named += [
         (("tables", "diverged", index, "window"), rule.window)

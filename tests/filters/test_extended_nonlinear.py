@@ -83,7 +83,7 @@ def test_numeric_jacobians(sigma):
     shown, h = jacobian.measurement(NUMERIC, x, covariance, 0)
     assert np.array_equal(moved, drifted(x, 0))
     assert np.array_equal(shown, seen(x, 0))
-    accuracy = 1e-6 if sigma > 0.1 else 1e-8 if sigma > 1e-5 else 1e-4
+    accuracy = 1e-6 if sigma > 0.1 else 1e-8 if sigma > 1e-5 else 1e-5
     np.testing.assert_allclose(f, drifted_jacobian(x, 0), atol=accuracy)
     np.testing.assert_allclose(h, seen_jacobian(x, 0), atol=accuracy)
 

@@ -132,7 +132,7 @@ BAD: dict[str, tuple[str, str, str, list[str]]] = {
     "sensor_without_a_kind": (
         SENSOR, "{noise_m: 0.1}", "points: {noise_m", ["sensors.points.kind", "missing"],
     ),
-    "one_epoch": ("duration_s: 60", "duration_s: 1.5", "title", ["two steps"]),
+    "one_epoch": ("duration_s: 60", "duration_s: 1.5", "step_s", ["1.5 epochs"]),
     "tab": ("seed: 7", "\tseed: 7", "\tseed", ["not valid YAML"]),
     "unclosed": ("fast: {}", "fast: {", None, ["not valid YAML"]),
 }  # fmt: skip

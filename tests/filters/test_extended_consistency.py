@@ -1,0 +1,82 @@
+"""Normalised errors of a Monte Carlo campaign are chi-square; those of a mis-tuned filter not."""
+
+import numpy as np
+import pytest
+from scipy.special import gammaincinv
+
+from debrisest.filters.extended import extended
+from debrisest.filters.gate import Gate
+from debrisest.filters.model import Model
+
+RUNS, EPOCHS = 300, 40
+F = np.eye(4) + np.eye(4, k=2)
+Q = np.diag([0.02, 0.02, 0.01, 0.01])
+R = np.diag([0.25, 0.25, 0.005**2])
+P0 = np.diag([1.0, 1.0, 0.04, 0.04])
+START = np.array([100.0, 50.0, -1.0, 0.5])
+PAIR = np.array([[0.0, 0.0], [80.0, -40.0]])
+
+
+def seen(x, _):
+    """Distances from two places, and a bearing: nearly linear within one sigma."""
+    ray = x[..., None, :2] - PAIR
+    bearing = np.arctan2(ray[..., 0, 1], ray[..., 0, 0])[..., None]
+    return np.concatenate([np.linalg.norm(ray, axis=-1), bearing], axis=-1)
+
+
+def campaign(seed):
+    """Truth and measurements, a fifth of them missing."""
+    rng = np.random.default_rng(seed)
+    truth = np.empty((RUNS, EPOCHS, 4))
+    truth[:, 0] = rng.multivariate_normal(START, P0, size=RUNS)
+    for k in range(1, EPOCHS):
+        noise = rng.multivariate_normal(np.zeros(4), Q, size=RUNS)
+        truth[:, k] = truth[:, k - 1] @ F.T + noise
+    y = seen(truth, 0)
+    y = y + rng.normal(size=y.shape) * np.sqrt(np.diagonal(R))
+    y[rng.random(y.shape) < 0.2] = np.nan
+    return truth, y
+
+
+def filtered(y, q=Q, r=R, p0=P0, **rule):
+    model = Model(lambda x, _: x @ F.T, seen, q, r, ("x", "y", "v_x", "v_y"))
+    start, covariance = np.stack([START] * RUNS), np.stack([p0] * RUNS)
+    return extended(model, start, covariance, y, keep=range(EPOCHS), **rule)
+
+
+def nees(history, truth, k):
+    error = (history.state - truth)[:, k]
+    solved = np.linalg.solve(history.covariance[:, k], error[..., None])[..., 0]
+    return (error * solved).sum()
+
+
+def probable(total, dof, tail=1e-8):
+    """Whether a chi-square sum lies between its `tail` quantiles."""
+    low, high = 2 * gammaincinv(dof / 2, [tail, 1 - tail])
+    return low < total < high
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("rule", [{}, {"iterations": 5}, {"gate": Gate()}])
+def test_matched_filter_is_consistent(seed, rule):
+    truth, y = campaign(seed)
+    history = filtered(y, **rule)
+    assert probable(history.nis.sum(), history.nis_dof.sum())
+    for k in (0, 10, EPOCHS - 1):
+        assert probable(nees(history, truth, k), 4 * RUNS)
+        inside = np.abs(history.state - truth)[:, k] < history.sigma[:, k]
+        assert abs(inside.mean() - 0.6827) < 6 * np.sqrt(0.6827 * 0.3173 / RUNS)
+
+
+@pytest.mark.parametrize("change", [{"r": R / 4}, {"r": 4 * R}, {"q": Q / 20}])
+@pytest.mark.parametrize("iterations", [1, 5])
+def test_mistuned_filter_is_not(change, iterations):
+    truth, y = campaign(0)
+    history = filtered(y, iterations=iterations, **change)
+    assert not probable(history.nis.sum(), history.nis_dof.sum())
+    assert not probable(nees(history, truth, EPOCHS - 1), 4 * RUNS)
+
+
+def test_overconfident_start_is_found_at_once():
+    truth, y = campaign(0)
+    assert not probable(nees(filtered(y, p0=P0 / 9), truth, 0), 4 * RUNS)
