@@ -124,7 +124,8 @@ def run_step(step: Step) -> None:
     stage = STAGES[step.stage]
     result = isolate(lambda data: stage.run(step.case, step.estimator, data), _read(step))
     times = step.case.scenario.clock.times
-    store.write(step.path, {"time_s": times, **result}, _attributes(step))
+    frames = step.case.scenario.frames
+    store.write(step.path, {"time_s": times, **result}, _attributes(step), frames)
 
 
 def failures_of(data: Data) -> dict[int, str]:
@@ -133,11 +134,15 @@ def failures_of(data: Data) -> dict[int, str]:
 
 
 def _read(step: Step) -> Data:
+    """Return what the stages before this one stored, each one's status under its own name."""
     if not step.upstream:
         return {"run": np.arange(step.first_run, step.first_run + step.runs, dtype=float)}
     data: Data = {}
     for upstream in step.upstream:
-        data |= store.read(upstream.path, step.runs)
+        found = store.read(upstream.path, step.runs)
+        if "status" in found:
+            found[f"{upstream.stage}_status"] = found.pop("status")
+        data |= found
     return data
 
 

@@ -55,6 +55,9 @@ class Part(Keys, ABC):
 class SimulationPart(Part):
     """Target, orbit, motion, observer or sensor: adds its datasets to what is there already."""
 
+    frames: ClassVar[dict[str, str]] = {}
+    """The axes and origin of datasets whose name does not tell them."""
+
     @abstractmethod
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the new datasets; ``data`` holds those of the parts before this one."""

@@ -46,14 +46,21 @@ class Checkpoint(NamedTuple):
     attributes: dict[str, Any] = {}
 
 
-def write(path: Path, data: Data, attributes: dict[str, Any]) -> None:
-    """Write a checkpoint in one step: afterwards it is there and whole, or as it was before."""
+def write(
+    path: Path, data: Data, attributes: dict[str, Any], frames: Mapping[str, str] | None = None
+) -> None:
+    """Write a checkpoint in one step: afterwards it is there and whole, or as it was before.
+
+    ``frames`` becomes the attribute ``frame`` of the datasets it names.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.tmp")
     try:
         with h5py.File(temporary, "w", libver="latest", track_order=True) as file:
             _write_attributes(file, attributes, data)
             _write_data(file, data)
+            for name in data.keys() & (frames or {}).keys():
+                file[name].attrs["frame"] = (frames or {})[name]
         _synchronise(temporary)
         os.replace(temporary, path)
         _synchronise(path.parent)

@@ -37,6 +37,9 @@ VOCABULARY: dict[str, Quantity] = {
     "covariance_time_s": Quantity(("covariance_time_s",), "s", "times of the stored covariances"),
     "error_name": Quantity(("error_name",), "", "components of the filter's error state"),
     "failure": Quantity(_RUN, "", "why the run gave no result (empty: it did)"),
+    "status": Quantity(_RUN, "", "how the stage ended, in words"),
+    "recover_status": Quantity(_RUN, "", "status of the recovery, as later stages read it"),
+    "filter_status": Quantity(_RUN, "", "status of the filter, as later stages read it"),
     # simulate
     "orbit_position": Quantity(_TIME_VECTOR, "m", "target's position, Earth-centred inertial"),
     "orbit_velocity": Quantity(_TIME_VECTOR, "m/s", "target's velocity, Earth-centred inertial"),
@@ -56,7 +59,6 @@ VOCABULARY: dict[str, Quantity] = {
     "q_if": Quantity(_TIME_QUATERNION, "1", "recovered attitude of the feature frame"),
     "piece": Quantity(_TIME, "1", "piece of uninterrupted samples the epoch belongs to"),
     "sign": Quantity(("run", "piece_number"), "1", "sign given to each piece"),
-    "recovery_status": Quantity(("run", "quaternion"), "1", "how the solver of a component ended"),
     "objective": Quantity(("run", "quaternion"), "1", "objective of each component's recovery"),
     "iterations": Quantity(("run", "quaternion"), "1", "iterations of each component's recovery"),
     # filter
@@ -74,7 +76,6 @@ VOCABULARY: dict[str, Quantity] = {
     "nis": Quantity(_TIME, "1", "normalised innovation squared"),
     "nis_dof": Quantity(_TIME, "1", "measured components at the epoch"),
     "repairs": Quantity(_RUN, "1", "covariance repairs"),
-    "filter_status": Quantity(_RUN, "1", "how the filter ended"),
     # assess
     "relabeling": Quantity(("run", "row", "column"), "1", "estimated to true principal axes"),
     "recovered_pitch": Quantity(_TIME, "rad", "pitch error of the recovered attitude", "deg"),

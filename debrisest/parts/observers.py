@@ -11,6 +11,7 @@ from debrisest.dynamics import relative_motion
 from debrisest.roles import SimulationPart, Vector3
 
 _ZERO = [0.0, 0.0, 0.0]
+_RELATIVE = "inertial axes, origin at the chaser"
 
 
 class Hold(SimulationPart):
@@ -18,6 +19,7 @@ class Hold(SimulationPart):
 
     needs = ("orbit_position", "orbit_velocity")
     gives = ("true_position",)
+    frames = {"true_position": _RELATIVE}
     kind: Literal["hold"]
     position_m: Vector3
 
@@ -34,6 +36,7 @@ class Drift(SimulationPart):
 
     needs = ("orbit_position", "orbit_velocity")
     gives = ("true_position",)
+    frames = {"true_position": _RELATIVE, "true_velocity": _RELATIVE}
     kind: Literal["drift"]
     position_m: Vector3
     velocity_m_s: Vector3 = _ZERO

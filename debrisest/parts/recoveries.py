@@ -12,6 +12,7 @@ from debrisest.assessment.signs import signs_right
 from debrisest.attitude import quaternion
 from debrisest.attitude.points import triad, wahba
 from debrisest.clock import Clock
+from debrisest.outcome import sentences
 from debrisest.recovery.basis_pursuit import BasisPursuit as Solution
 from debrisest.recovery.basis_pursuit import RecoveryStatus, basis_pursuit
 from debrisest.recovery.fourier import dictionary_length
@@ -74,7 +75,7 @@ class BasisPursuit(RecoveryPart):
             "q_if": quaternion.normalize(np.moveaxis(solution.signal, 1, -1)),
             "piece": np.where(piece < 0, np.nan, piece),
             "sign": sign,
-            "recovery_status": solution.status,
+            "status": sentences(solution.status.max(axis=-1), RecoveryStatus),
             "objective": solution.objective,
             "iterations": solution.iterations,
         }
@@ -84,7 +85,7 @@ class BasisPursuit(RecoveryPart):
         result: Data = {
             "coverage": np.isfinite(data["piece"]).mean(axis=-1),
             "pieces": np.isfinite(data["sign"]).sum(axis=-1),
-            "solved": (data["recovery_status"] == RecoveryStatus.CONVERGED).all(axis=-1),
+            "solved": data["recover_status"] == RecoveryStatus.CONVERGED.sentence,
         }
         if "true_q_ib" not in data:
             return result

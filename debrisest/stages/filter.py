@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 
 from debrisest.arrays import Data
+from debrisest.filters.history import FilterStatus
+from debrisest.outcome import sentences
 from debrisest.scenario.load import Case
 
 VERSION = 1
@@ -35,5 +37,5 @@ def run(case: Case, estimator: str, data: Data) -> Data:
         "nis": history.nis,
         "nis_dof": history.nis_dof,
         "repairs": history.repairs,
-        "filter_status": history.status,
+        "status": sentences(history.status, FilterStatus),
     }

@@ -51,8 +51,13 @@ def _scatter(results: list[tuple[NDArray[np.intp], Data]], runs: int) -> Data:
             continue
         values: list[Any] = [result[name] for _, result in results]
         shape = np.max([value.shape[1:] for value in values], axis=0)
-        whole[name] = np.full((runs, *shape), np.nan)
+        is_text = first.dtype.kind in "US"
+        whole[name] = np.full(
+            (runs, *shape), "" if is_text else np.nan, object if is_text else None
+        )
         for (where, _), value in zip(results, values):
             inner: list[Any] = [slice(length) for length in value.shape[1:]]
             whole[name][(where, *inner)] = value
+        if is_text:
+            whole[name] = whole[name].astype(str)
     return whole
