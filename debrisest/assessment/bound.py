@@ -11,6 +11,19 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.filters.replay_model import ReplayModel
+
+_BLOCK = 10  # runs at a time, for the sake of memory
+
+
+class PairedErrors(NamedTuple):
+    """Errors of the efficient filter and smoother, and what is to be expected of them."""
+
+    filter_error: Array
+    """(run, time, n_e)."""
+    filter_sigma: Array
+    smoother_error: Array
+    smoother_sigma: Array
 
 
 class Bound(NamedTuple):
@@ -57,6 +70,37 @@ def efficient(
         *_moved(transition, start_error, start_covariance),
         *_moved(transition, start_error[:, last], start_covariance[:, last]),
     )
+
+
+def paired_errors(
+    model: ReplayModel, truth: Array, prior: Array, covariance: Array, measured: Array
+) -> PairedErrors:
+    """Return the plain errors of the efficient estimators for the runs of an experiment.
+
+    ``truth (run, n)`` and ``prior (run, n)`` are states of epoch 0, ``covariance (n_e, n_e)`` the
+    prior's, ``measured (run, time, m)``. Without outliers, of course: the bound is for the noise
+    of the model.
+    """
+    last, blocks = measured.shape[1] - 1, []
+    for begin in range(0, len(truth), _BLOCK):
+        runs = slice(begin, begin + _BLOCK)
+        states, sensitivity = model.trajectory(truth[runs], 0, last)
+        shown, derivative = model.rows(states, sensitivity, 0, np.arange(last + 1))
+        transition = [model.transition(sensitivity[:, k], 0, k) for k in range(last + 1)]
+        bound = efficient(
+            np.stack(transition, axis=1),
+            derivative,
+            measured[runs] - shown,
+            model.sigma,
+            model.plain_difference(prior[runs], truth[runs]),
+            covariance,
+        )
+        blocks.append((bound[0], _sigma(bound[1]), bound[2], _sigma(bound[3])))
+    return PairedErrors(*(np.concatenate(parts) for parts in zip(*blocks)))
+
+
+def _sigma(covariance: Array) -> Array:
+    return np.asarray(np.sqrt(np.diagonal(covariance, 0, -2, -1)))
 
 
 def _moved(transition: Array, error: Array, covariance: Array) -> tuple[Array, Array]:

@@ -46,7 +46,15 @@ def angular_acceleration(rate: NDArray[Any], k: NDArray[Any]) -> NDArray[Any]:
 
     All in principal axes; the printed equation leaves the frame open.
     """
-    return np.asarray(slopes(k) * _products(rate))
+    return np.asarray(slopes(k) * rate_products(rate))
+
+
+def rate_products(rate: NDArray[Any]) -> NDArray[Any]:
+    """``wy wz, wz wx, wx wy (..., 3)``."""
+    result = np.empty_like(rate)
+    x, y, z = rate[..., 0], rate[..., 1], rate[..., 2]
+    result[..., 0], result[..., 1], result[..., 2] = y * z, z * x, x * y
+    return result
 
 
 def acceleration_by_rate(rate: Array, k: Array) -> Array:
@@ -64,7 +72,7 @@ def acceleration_by_ratios(rate: Array, k: Array) -> Array:
     e1, inverse_e2 = np.exp(k[..., 0]), np.exp(k[..., 1])
     rows = [-sx, 1.0 / (e1 * inverse_e2), -e1, -1.0 / inverse_e2, e1 * inverse_e2, sz]
     by_k = np.stack(rows, axis=-1).reshape(*e1.shape, 3, 2)
-    return np.asarray(_products(rate)[..., None] * by_k)
+    return np.asarray(rate_products(rate)[..., None] * by_k)
 
 
 def from_slopes(slope: Array) -> Array:
@@ -98,8 +106,3 @@ def feasible(k: Array, limit: float = LARGEST_START_SLOPE) -> Array:
             break
         result[outside] *= 0.9
     return result
-
-
-def _products(rate: NDArray[Any]) -> NDArray[Any]:
-    x, y, z = rate[..., 0], rate[..., 1], rate[..., 2]
-    return np.stack([y * z, z * x, x * y], axis=-1)

@@ -36,16 +36,22 @@ def cross(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
     """Vector product ``(..., 3)``, several times faster than numpy's."""
     a0, a1, a2 = a[..., 0], a[..., 1], a[..., 2]
     b0, b1, b2 = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0], axis=-1)
+    x = a1 * b2 - a2 * b1
+    result = np.empty((*x.shape, 3), x.dtype)
+    result[..., 0], result[..., 1], result[..., 2] = x, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
+    return result
 
 
 def rotation_derivative(
-    rate: NDArray[Any], q: NDArray[Any], k: NDArray[Any], leader: Leader, raw: bool = False
+    rate: NDArray[Any], q: NDArray[Any], slope: NDArray[Any], leader: Leader, raw: bool = False
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Time derivatives of rate ``(..., 3)`` and ``q_lt (..., 4)`` (Eqs 16-18, corrected)."""
+    """Time derivatives of rate ``(..., 3)`` and ``q_lt (..., 4)`` (Eqs 16-18, corrected).
+
+    ``slope (..., 3)`` as of `inertia_ratios.slopes`, which are constant and dear to compute.
+    """
     spin, spin_up = float(leader.rate), float(leader.acceleration)
     rate_t = unrotate(q, rate + np.array([0.0, 0.0, spin]), raw)
-    acceleration = rotate(q, inertia_ratios.angular_acceleration(rate_t, k), raw)
+    acceleration = rotate(q, slope * inertia_ratios.rate_products(rate_t), raw)
     acceleration[..., 0] += spin * rate[..., 1]
     acceleration[..., 1] -= spin * rate[..., 0]
     acceleration[..., 2] -= spin_up
@@ -57,7 +63,7 @@ def rotation_derivative(
 def rotation_step(
     rate: NDArray[Any],
     q: NDArray[Any],
-    k: NDArray[Any],
+    slope: NDArray[Any],
     leader: tuple[Leader, Leader, Leader],
     step: float,
     raw: bool = False,
@@ -65,10 +71,10 @@ def rotation_step(
     """Rate and ``q_lt`` after one classical Runge-Kutta step, which may go back in time."""
     start, middle, end = leader
     half, sixth = 0.5 * step, step / 6.0
-    w1, q1 = rotation_derivative(rate, q, k, start, raw)
-    w2, q2 = rotation_derivative(rate + half * w1, q + half * q1, k, middle, raw)
-    w3, q3 = rotation_derivative(rate + half * w2, q + half * q2, k, middle, raw)
-    w4, q4 = rotation_derivative(rate + step * w3, q + step * q3, k, end, raw)
+    w1, q1 = rotation_derivative(rate, q, slope, start, raw)
+    w2, q2 = rotation_derivative(rate + half * w1, q + half * q1, slope, middle, raw)
+    w3, q3 = rotation_derivative(rate + half * w2, q + half * q2, slope, middle, raw)
+    w4, q4 = rotation_derivative(rate + step * w3, q + step * q3, slope, end, raw)
     return rate + sixth * (w1 + 2.0 * (w2 + w3) + w4), q + sixth * (q1 + 2.0 * (q2 + q3) + q4)
 
 

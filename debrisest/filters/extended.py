@@ -8,7 +8,7 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters import jacobian
 from debrisest.filters.covariance import solve
-from debrisest.filters.gate import Gate, Gatekeeper, inflation
+from debrisest.filters.gate import Gate, Gatekeeper
 from debrisest.filters.history import History, HistoryWriter, Tally
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.model import Model
@@ -80,13 +80,13 @@ def extended(
     x- to x_i as it is, as any extended filter does from x- to its estimate.
 
     A `gate` judges the innovations at x- and has those that it rejects treated as not observed;
-    NIS counts the others.
+    NIS counts the others, where a gate reopened with the prior that it doubted and enlarged.
     """
     rule = _rule(iterations, tolerance, stop)
-    runs, epochs, components = measurements.shape
+    epochs, components = measurements.shape[1:]
     writer = HistoryWriter(model, state, covariance, epochs, keep)
-    keeper = None if gate is None else Gatekeeper(gate, model.gate_groups, runs, components)
-    repairs = np.zeros(runs, dtype=np.int64)
+    keeper = None if gate is None else Gatekeeper(gate, model.gate_groups, covariance, components)
+    repairs = np.zeros(len(state), dtype=np.int64)
     with np.errstate(all="ignore"):
         for k in range(epochs):
             state, covariance = writer.live(state, covariance)
@@ -140,9 +140,8 @@ def _gated(
 ) -> tuple[_Prior, IntArray]:
     noise = model.measurement_noise
     total = np.swapaxes(response, -2, -1) @ prior.covariance @ response + noise
-    verdict = keeper.judge(prior.used, innovation, total)
-    factor = inflation(verdict, innovation, total, noise)
-    covariance = factor[:, None, None] * prior.covariance
+    verdict = keeper.judge(prior.used, innovation, total, noise)
+    covariance = keeper.doubted(prior.covariance, verdict.factor)
     prior = prior._replace(covariance=covariance, used=verdict.accepted)
     return prior, verdict.reopened.astype(np.int64)
 

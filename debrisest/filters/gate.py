@@ -22,7 +22,7 @@ class Gate(NamedTuple):
     lockout_share: float = 0.5
     """A run that rejects more than this share of its measured groups may be lost itself."""
     lockout_epochs: int = 3
-    """After so many such measured epochs on end, the next such one is let in as a whole."""
+    """After so many such measured epochs on end, the gate opens for the next such one."""
 
 
 class Verdict(NamedTuple):
@@ -32,12 +32,23 @@ class Verdict(NamedTuple):
     """Components to use, (run, m)."""
     reopened: BoolArray
     """Runs whose gate was opened, (run,)."""
+    factor: Array
+    """By how much the predicted covariance of a reopened run is too small, 1 of others, (run,)."""
 
 
 class Gatekeeper:
-    """Applies a `Gate` epoch by epoch, and remembers for how long each run has been locked out."""
+    """Applies a `Gate` epoch by epoch, and remembers for how long each run has been locked out.
 
-    def __init__(self, gate: Gate, groups: tuple[int, ...] | None, runs: int, components: int):
+    Opened alone, the gate of a filter that is sure of a wrong state would let in data that hardly
+    move it, and with them every outlier. So the prediction of such a run is doubted: its covariance
+    is multiplied until it explains the typical rejected group, and the gate, as wide as that makes
+    it, judges the epoch again; if most is rejected even so, everything is let in. (The factor is
+    that of strong tracking filters, of the median group in place of the sum.) But `doubted` lets no
+    sigma grow beyond that of the start: directions that the data never informed would carry a
+    nonlinear filter away. A jump much larger than the start's sigma takes several openings.
+    """
+
+    def __init__(self, gate: Gate, groups: tuple[int, ...] | None, start: Array, components: int):
         _require_settings(gate, groups, components)
         labels = np.arange(components) if groups is None else np.array(groups, dtype=np.int64)
         _, self._group = np.unique(labels, return_inverse=True)
@@ -46,18 +57,39 @@ class Gatekeeper:
         limits = 2.0 * gammainccinv(0.5 * freedom, gate.false_alarm)
         self._limits = np.concatenate([[np.inf], limits])
         self._gate = gate
-        self._streak = np.zeros(runs, dtype=np.int64)
+        self._streak = np.zeros(len(start), dtype=np.int64)
+        self._start = np.diagonal(start, 0, -2, -1)
 
-    def judge(self, measured: BoolArray, innovation: Array, total: Array) -> Verdict:
-        """Judge groups by their own innovation `(run, m)` and its covariance `(run, m, m)`."""
+    def judge(self, measured: BoolArray, innovation: Array, total: Array, noise: Array) -> Verdict:
+        """Judge groups by their own innovations.
+
+        `total` (run, m, m) is the covariance of `innovation` (run, m), of which `noise` (m, m) is
+        the measurement's share.
+        """
         present = measured[:, self._members] & self._real
-        freedom = present.sum(-1)
-        passed = self._squares(present, innovation, total) <= self._limits[freedom]
-        reopened = self._locked_out((~passed).sum(-1), (freedom > 0).sum(-1))
-        return Verdict(measured & (passed[:, self._group] | reopened[:, None]), reopened)
+        limits = self._limits[present.sum(-1)]
+        squares = self._squares(present, innovation, total)
+        passed = squares <= limits
+        judged = present.any(-1).sum(-1)
+        reopened = self._locked_out((~passed).sum(-1), judged)
+        factor = np.ones(len(measured))
+        if reopened.any():
+            part = present[reopened], innovation[reopened], total[reopened]
+            factor[reopened] = _median(self._needed(*part, noise), ~passed[reopened])
+            widened = noise + factor[reopened, None, None] * (part[2] - noise)
+            wider = self._squares(*part[:2], widened) <= limits[reopened]
+            shut = self._suspect((~wider).sum(-1), judged[reopened])
+            passed[reopened] = wider | shut[:, None]
+        return Verdict(measured & passed[:, self._group], reopened, factor)
+
+    def doubted(self, covariance: Array, factor: Array) -> Array:
+        """Predicted covariance (run, n_e, n_e) times `factor`, in no direction above the start."""
+        headroom = self._start / np.diagonal(covariance, 0, -2, -1)
+        scale = np.sqrt(np.maximum(np.fmin(factor[:, None], headroom), 1.0))
+        return np.asarray(scale[:, :, None] * covariance * scale[:, None])
 
     def _squares(self, present: BoolArray, innovation: Array, total: Array) -> Array:
-        """Normalised innovation squared of every group, (run, group); NaN if it has none."""
+        """Normalised innovation squared of every group, (run, group)."""
         nu = innovation[:, self._members]
         block = total[:, self._members[:, :, None], self._members[:, None, :]]
         nu, _, block = drop_missing(present, nu, nu[..., None, :], block)
@@ -65,26 +97,32 @@ class Gatekeeper:
         solved = solve(block.reshape(-1, size, size), nu.reshape(-1, size, 1))
         return np.asarray((nu * solved.reshape(nu.shape)).sum(-1))
 
+    def _needed(self, present: BoolArray, innovation: Array, total: Array, noise: Array) -> Array:
+        """Factor of P with which a group's squares, each by its own scale, are as expected."""
+        expected, own = np.diagonal(total, 0, -2, -1), np.diagonal(noise)
+        found, predicted = (innovation**2 - own) / expected, (expected - own) / expected
+        sums = [
+            np.where(present, share[:, self._members], 0.0).sum(-1) for share in (found, predicted)
+        ]
+        return np.asarray(sums[0] / sums[1])
+
+    def _suspect(self, rejected: IntArray, judged: IntArray) -> BoolArray:
+        return rejected > self._gate.lockout_share * judged
+
     def _locked_out(self, rejected: IntArray, judged: IntArray) -> BoolArray:
-        suspect = rejected > self._gate.lockout_share * judged
+        suspect = self._suspect(rejected, judged)
         reopened: BoolArray = suspect & (self._streak >= self._gate.lockout_epochs)
         self._streak = np.where(judged == 0, self._streak, (self._streak + 1) * suspect)
         self._streak[reopened] = 0
         return reopened
 
 
-def inflation(verdict: Verdict, innovation: Array, total: Array, noise: Array) -> Array:
-    """Factor (run,) of the predicted covariance that explains the innovations of a reopened run.
-
-    Opened alone, the gate of a filter that is sure of a wrong state would let in data that hardly
-    move it. The factor matches the sum of the squared innovations, each by its own scale, to what
-    is expected of them: the fading factor of strong tracking filters. It is one for other runs.
-    """
-    expected, own = np.diagonal(total, 0, -2, -1), np.diagonal(noise, 0, -2, -1)
-    weight = np.where(verdict.accepted, 1.0 / expected, 0.0)
-    surplus = (weight * (innovation**2 - own)).sum(-1)
-    factor = surplus / (weight * (expected - own)).sum(-1)
-    return np.where(verdict.reopened & np.isfinite(factor), np.maximum(factor, 1.0), 1.0)
+def _median(needed: Array, rejected: BoolArray) -> Array:
+    """Upper median of the rejected groups (run,), at least one; one where it is not finite."""
+    ordered = np.sort(np.where(rejected, needed, np.nan), axis=-1)
+    middle = np.isfinite(ordered).sum(-1, keepdims=True) // 2
+    factor = np.take_along_axis(ordered, middle, axis=-1)[:, 0]
+    return np.where(np.isfinite(factor), np.maximum(factor, 1.0), 1.0)
 
 
 def _members(group: IntArray) -> tuple[IntArray, BoolArray]:

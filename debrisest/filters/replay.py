@@ -7,47 +7,23 @@ Nothing is tuned. The measurements are kept, and the average cost of an epoch gr
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
-from debrisest.filters import robust
-from debrisest.filters.gauss_newton import (
-    Evidence,
-    Solution,
-    gauss_newton,
-    linearize,
-    move,
-    normal_equations,
-    scaled_inverse,
-    scaled_solve,
-    take,
-    weigh,
-)
+from debrisest.filters.evidence import Evidence, take, weigh
+from debrisest.filters.frame_update import FRAME_ITERATIONS, Belief, Frame, predict, update
+from debrisest.filters.gauss_newton import Solution, gauss_newton, move
 from debrisest.filters.replay_estimates import Estimates, ReplayStatus, empty, finite, write
 from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.robust import robust_newton
+from debrisest.filters.scaled import scaled_inverse
 
 RATIO = 1.25
 """Of successive anchors; at 1 every epoch is one."""
 _START_ANCHORS, _START_ITERATIONS, _ANCHOR_ITERATIONS, _SMOOTHER_ITERATIONS = 2, 12, 4, 30
-_FRAME_ITERATIONS, _FRAME_CONVERGED = 3, 1e-3
-_ROBUST_START, _SOFT_FRAMES, _PASSES = 10, 3, 3
-
-
-class _Belief(NamedTuple):
-    """State (run, n), and information (run, n_e, n_e) in the state's own chart."""
-
-    state: Array
-    information: Array
-
-
-class _Frame(NamedTuple):
-    """Figures of one epoch, (run,) each."""
-
-    nis: Array
-    dof: IntArray
-    rejected: IntArray
+_FRESH_STARTS = 3
+"""Anchors at which, with a gate, a start from their own epoch competes with the filter's."""
 
 
 def replay(
@@ -58,19 +34,20 @@ def replay(
     ratio: float = RATIO,
     gate: bool = False,
     keep: Sequence[int] = (),
+    also: Sequence[int] = (),
 ) -> Estimates:
     """Estimate a batch of runs from the prior ``(run, n)`` of epoch 0 and its plain covariance.
 
     `covariance` is (run, n_e, n_e), `measured` (run, time, m) with NaN = not observed; `keep` lists
-    the epochs whose covariance is wanted. With `gate`, outliers are kept out: by their innovation
-    between anchors; at every anchor the residuals of all epochs decide again, so that nothing is
-    locked out for good and an outlier of the first epoch is found later.
+    the epochs whose covariance is wanted, `also` epochs to replay at besides the anchors. With
+    `gate`, outliers are kept out: by their innovation between anchors; at every anchor the
+    residuals of all epochs decide again, so that nothing is locked out for good.
     """
     _require_shapes(model, prior, covariance, measured, ratio)
     with np.errstate(all="ignore"):
         evidence = weigh(model, prior, covariance, measured)
         result = empty((*measured.shape[:2], prior.shape[-1]), len(model.error_names), keep)
-        _filter(model, evidence, ratio, gate, result)
+        _filter(model, evidence, _schedule(evidence, ratio, also), gate, result)
     return result
 
 
@@ -96,7 +73,10 @@ def smooth(
     with np.errstate(all="ignore"):
         evidence = take(weigh(model, prior, covariance, measured), runs)
         start = model.rewind(filtered.state[runs, last], last)
-        solution = _anchor(model, evidence, start, last, last, _SMOOTHER_ITERATIONS, gate)
+        if gate:
+            solution = robust_newton(model, evidence, [start], last, last, _SMOOTHER_ITERATIONS)
+        else:
+            solution = gauss_newton(model, evidence, start, last, _SMOOTHER_ITERATIONS)
         best = move(model, solution.at.state, solution.step)
         states, sensitivity = model.trajectory(best, 0, last)
         spread = scaled_inverse(solution.at.information)
@@ -118,24 +98,28 @@ def anchors(first: int, epochs: int, ratio: float = RATIO) -> list[int]:
     return result
 
 
+def _schedule(evidence: Evidence, ratio: float, also: Sequence[int]) -> list[int]:
+    """Epochs of the replays; the first of them is the first that any run has measurements of."""
+    epochs = evidence.seen.shape[1]
+    measured = np.flatnonzero(evidence.seen.any(axis=(0, 2)))
+    first = int(measured[0]) if len(measured) else epochs
+    return sorted({*anchors(first, epochs, ratio), *(k for k in also if first <= k < epochs)})
+
+
 def _filter(
-    model: ReplayModel, evidence: Evidence, ratio: float, gate: bool, result: Estimates
+    model: ReplayModel, evidence: Evidence, schedule: list[int], gate: bool, result: Estimates
 ) -> None:
-    epochs = result.state.shape[1]
-    observed = np.flatnonzero(evidence.weight.any(axis=(0, 2)))
-    first = int(observed[0]) if len(observed) else epochs
-    schedule = anchors(first, epochs, ratio)
     back = model.inverse_chart(evidence.prior)
-    belief = _Belief(evidence.prior, np.swapaxes(back, -1, -2) @ evidence.information @ back)
+    belief = Belief(evidence.prior, np.swapaxes(back, -1, -2) @ evidence.information @ back)
     runs = np.flatnonzero(finite(*belief))
     evidence, belief = take(evidence, runs), take(belief, runs)
     result.diverged_at[runs], result.status[runs] = -1, ReplayStatus.CONVERGED
-    for k in range(epochs):
+    for k in range(result.state.shape[1]):
         if k > 0:
-            belief = _predict(model, belief, k)
+            belief = predict(model, belief, k)
         anchored = k in schedule
-        belief, frame = _update(
-            model, belief, evidence, k, 1 if anchored else _FRAME_ITERATIONS, gate
+        belief, frame = update(
+            model, belief, evidence, k, 1 if anchored else FRAME_ITERATIONS, gate
         )
         if anchored:
             belief, solution = _replayed(model, belief, evidence, k, schedule, gate)
@@ -151,7 +135,7 @@ def _filter(
 
 
 def _record(
-    model: ReplayModel, result: Estimates, k: int, runs: IntArray, belief: _Belief, frame: _Frame
+    model: ReplayModel, result: Estimates, k: int, runs: IntArray, belief: Belief, frame: Frame
 ) -> None:
     back = model.inverse_chart(belief.state)
     spread = back @ scaled_inverse(belief.information) @ np.swapaxes(back, -1, -2)
@@ -166,93 +150,26 @@ def _judge(result: Estimates, runs: IntArray, solution: Solution) -> None:
     )
 
 
-def _predict(model: ReplayModel, belief: _Belief, k: int) -> _Belief:
-    """Belief of epoch k from that of k - 1."""
-    states, sensitivity = model.trajectory(belief.state, k - 1, k)
-    state = states[:, -1]
-    transition = model.transition(sensitivity[:, -1], k - 1, k)
-    back = model.chart(belief.state) @ np.linalg.inv(transition) @ model.inverse_chart(state)
-    return _Belief(state, np.swapaxes(back, -1, -2) @ belief.information @ back)
-
-
-def _update(
-    model: ReplayModel, predicted: _Belief, evidence: Evidence, k: int, iterations: int, gate: bool
-) -> tuple[_Belief, _Frame]:
-    """Iterated update with the measurements of epoch k, each run until it has converged.
-
-    With `gate`, the weights of the epoch's rejected rows are set to zero in `evidence`.
-    """
-    frame = slice(k, k + 1)
-    state, information = predicted.state.copy(), predicted.information.copy()
-    runs = np.arange(len(state))
-    for iteration in range(iterations):
-        at = state[runs]
-        states, sensitivity = model.trajectory(at, k, k)
-        shown, derivative = model.rows(states, sensitivity, k, np.array([k]))
-        back = model.inverse_chart(at)
-        rows = derivative / model.sigma[:, None] @ back[:, None]
-        residual = evidence.measured[runs, frame] - shown / model.sigma
-        if gate and iteration == 0:
-            spread = scaled_inverse(predicted.information)[:, None]
-            evidence.weight[:, frame] *= robust.innovation_gate(residual, rows, spread)
-        terms = normal_equations(rows, residual, evidence.weight[runs, frame])
-        total = predicted.information[runs] + terms[0]
-        offset = model.difference(predicted.state[runs], at)
-        right = terms[1] + (predicted.information[runs] @ offset[..., None])[..., 0]
-        step = scaled_solve(total, right)
-        decrement = (step * right).sum(-1)
-        if iteration == 0:
-            nis = terms[2] - decrement
-        state[runs], information[runs] = model.retract(at, step), total
-        runs = runs[~(decrement < _FRAME_CONVERGED)]
-        if len(runs) == 0:
-            break
-    used = (evidence.weight[:, k] > 0.0).sum(-1)
-    return _Belief(state, information), _Frame(nis, used, evidence.seen[:, k].sum(-1) - used)
-
-
 def _replayed(
-    model: ReplayModel, belief: _Belief, evidence: Evidence, k: int, schedule: list[int], gate: bool
-) -> tuple[_Belief, Solution]:
+    model: ReplayModel, belief: Belief, evidence: Evidence, k: int, schedule: list[int], gate: bool
+) -> tuple[Belief, Solution]:
     """Belief of epoch k by a replay of everything measured so far."""
     number = schedule.index(k)
-    if number == 0:
+    starts = [] if number == 0 else [model.rewind(belief.state, k)]
+    if number == 0 or (gate and number < _FRESH_STARTS):
         shown = np.where(evidence.seen[:, k], evidence.measured[:, k], np.nan)
-        start = model.start(evidence.prior, shown * model.sigma, k)
-    else:
-        start = model.rewind(belief.state, k)
+        starts.append(model.start(evidence.prior, shown * model.sigma, k))
     iterations = _START_ITERATIONS if number < _START_ANCHORS else _ANCHOR_ITERATIONS
-    frames = k - schedule[0] + 1
-    solution = _anchor(model, evidence, start, k, frames, iterations, gate)
+    if gate:
+        solution = robust_newton(model, evidence, starts, k, k - schedule[0] + 1, iterations)
+    else:
+        solution = gauss_newton(model, evidence, starts[0], k, iterations)
     at = solution.at
     transition = model.transition(at.last_sensitivity, 0, k)
     to_chart = model.chart(at.last_state) @ transition
     state = model.retract(at.last_state, (to_chart @ solution.step[..., None])[..., 0])
     back = np.linalg.inv(transition) @ model.inverse_chart(at.last_state)
-    return _Belief(state, np.swapaxes(back, -1, -2) @ at.information @ back), solution
-
-
-def _anchor(
-    model: ReplayModel,
-    evidence: Evidence,
-    start: Array,
-    k: int,
-    frames: int,
-    iterations: int,
-    gate: bool,
-) -> Solution:
-    """Gauss-Newton over epochs 0 to k; with `gate`, weights and estimate are found in turns."""
-    if not gate:
-        return gauss_newton(model, evidence, start, k, iterations)
-    seen = evidence.seen[:, : k + 1]
-    residual = linearize(model, evidence, start, k).residual
-    passes = [robust.cauchy] * (_PASSES if frames <= _ROBUST_START else 1)
-    passes.append(robust.cauchy if frames <= _SOFT_FRAMES else robust.hard)
-    for weights in passes:
-        evidence.weight[:, : k + 1] = seen * weights(residual)
-        solution = gauss_newton(model, evidence, start, k, iterations)
-        start, residual = move(model, solution.at.state, solution.step), solution.at.residual
-    return solution
+    return Belief(state, np.swapaxes(back, -1, -2) @ at.information @ back), solution
 
 
 def _require_shapes(

@@ -1,31 +1,60 @@
-"""Weights that keep outliers out. They multiply normalised residuals."""
+"""Gauss-Newton that finds its weights, and so the outliers, as it goes along."""
 
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.filters import weights
+from debrisest.filters.evidence import Evidence, Linearization, linearize, put, take
+from debrisest.filters.gauss_newton import Solution, gauss_newton, move
+from debrisest.filters.replay_model import ReplayModel
 
-CAUCHY_SCALE = 3.0
-GATE = 5.0
-"""Innovations beyond this many sigma are rejected."""
-LIMIT = 4.5
-"""Residuals of the estimate itself beyond this are."""
-
-
-def cauchy(residual: Array) -> Array:
-    """Weights of Cauchy's loss, which lets go of outliers gradually."""
-    return np.asarray((1.0 + (residual / CAUCHY_SCALE) ** 2) ** -0.5)
+_EARLY_FRAMES, _SOFT_FRAMES = 10, 3
+_EARLY_PASSES = 3
 
 
-def hard(residual: Array) -> Array:
-    """One for residuals within `LIMIT`, zero beyond."""
-    return (np.abs(residual) < LIMIT).astype(np.float64)
+def robust_newton(
+    model: ReplayModel,
+    evidence: Evidence,
+    starts: list[Array],
+    last: int,
+    frames: int,
+    iterations: int,
+) -> Solution:
+    """Minimise the cost of epochs 0 to ``last``, of which ``frames`` were measured, with outliers.
 
-
-def innovation_gate(innovation: Array, derivative: Array, covariance: Array) -> Array:
-    """Weights ``(..., m)`` of normalised innovations, each row judged by itself.
-
-    `derivative` (..., m, n_e) is that of normalised rows, `covariance` (..., n_e, n_e) that of
-    the prediction.
+    Passes with Cauchy's weights, then one with hard rejection; in the first few frames, where a
+    hard decision could be wrong for good, all passes are soft. Of several ``starts (run, n)`` each
+    run keeps the one that ends with the least loss. The weights in `evidence` are replaced.
     """
-    spread = 1.0 + ((derivative @ covariance) * derivative).sum(-1)
-    return np.asarray(innovation**2 <= GATE**2 * spread, dtype=np.float64)
+    best, weight, loss = _settle(model, evidence, starts[0], last, frames, iterations)
+    for start in starts[1:]:
+        other, other_weight, other_loss = _settle(model, evidence, start, last, frames, iterations)
+        runs = np.flatnonzero(~(loss <= other_loss))
+        put(best.at, runs, take(other.at, runs))
+        best.step[runs], best.decrement[runs] = other.step[runs], other.decrement[runs]
+        weight[runs], loss[runs] = other_weight[runs], other_loss[runs]
+    evidence.weight[:, : last + 1] = weight
+    return best
+
+
+def _settle(
+    model: ReplayModel, evidence: Evidence, start: Array, last: int, frames: int, iterations: int
+) -> tuple[Solution, Array, Array]:
+    """Solution from one start, its weights and its loss."""
+    seen = evidence.seen[:, : last + 1]
+    weighted = evidence._replace(weight=evidence.weight.copy())
+    residual = linearize(model, weighted, start, last).residual
+    passes = [weights.cauchy] * (_EARLY_PASSES if frames <= _EARLY_FRAMES else 1)
+    passes.append(weights.cauchy if frames <= _SOFT_FRAMES else weights.hard)
+    for rule in passes:
+        weight = seen * rule(residual)
+        weighted.weight[:, : last + 1] = weight
+        solution = gauss_newton(model, weighted, start, last, iterations)
+        start, residual = move(model, solution.at.state, solution.step), solution.at.residual
+    return solution, weight, _loss(model, evidence, solution.at)
+
+
+def _loss(model: ReplayModel, evidence: Evidence, at: Linearization) -> Array:
+    offset = model.plain_difference(evidence.prior, at.state)
+    prior = (offset[:, None] @ evidence.information @ offset[..., None])[:, 0, 0]
+    return np.asarray(prior + weights.cauchy_loss(at.residual))

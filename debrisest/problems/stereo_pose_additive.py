@@ -1,4 +1,8 @@
-"""Jacobians of the stereo pose model in its additive form, as an extended filter needs them."""
+"""The stereo pose problem with an additive quaternion, as the paper's filters are handed it.
+
+The errors are the 15 + 3N components of the state; a correction is added, then the quaternion is
+scaled to unit norm. The derivatives are those by the components, without that scaling.
+"""
 
 from collections.abc import Callable
 from typing import Any
@@ -16,6 +20,7 @@ from debrisest.dynamics.relative_rotation import (
     rotation_matrix,
     unrotate,
 )
+from debrisest.filters.model import Model
 from debrisest.problems.stereo_pose_model import (
     POINTS,
     POSITION,
@@ -24,6 +29,8 @@ from debrisest.problems.stereo_pose_model import (
     K,
     Q,
     Setup,
+    error_names,
+    measurement,
     points_in_view,
     process,
 )
@@ -31,6 +38,32 @@ from debrisest.sensors import stereo
 
 _COMPLEX_STEP = 1e-30
 _MOVING = 15
+
+
+def additive_model(
+    known: Setup, process_noise: Array, measurement_noise: Array, exact: bool = True
+) -> Model:
+    """Return the model, with covariances ``(n, n)`` per step and ``(m, m)``.
+
+    Without ``exact`` the transition is the printed ``I + F dt``.
+    """
+    transition = process_jacobian if exact else first_order_transition
+    return Model(
+        process=lambda state, k: process(known, state, k),
+        measurement=lambda state, k: measurement(known, state, k),
+        process_noise=process_noise,
+        measurement_noise=measurement_noise,
+        error_names=error_names("q_lt_0 q_lt_1 q_lt_2 q_lt_3", known.points),
+        retract=_correct,
+        process_jacobian=lambda state, k: transition(known, state, k),
+        measurement_jacobian=lambda state, k: measurement_jacobian(known, state, k),
+    )
+
+
+def _correct(state: Array, error: Array) -> Array:
+    corrected = state + error
+    corrected[..., Q] /= np.linalg.norm(corrected[..., Q], axis=-1, keepdims=True)
+    return corrected
 
 
 def process_jacobian(known: Setup, state: Array, k: int) -> Array:
@@ -52,7 +85,11 @@ def first_order_transition(known: Setup, state: Array, k: int) -> Array:
             copies[..., POSITION], copies[..., VELOCITY], leader
         )
         result[..., RATE], result[..., Q] = rotation_derivative(
-            copies[..., RATE], copies[..., Q], copies[..., K], leader, known.raw_rotation
+            copies[..., RATE],
+            copies[..., Q],
+            inertia_ratios.slopes(copies[..., K]),
+            leader,
+            known.raw_rotation,
         )
         return copies + known.step * result
 

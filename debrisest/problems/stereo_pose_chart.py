@@ -107,12 +107,13 @@ def propagate(known: Setup, state: Array, first: int, last: int) -> tuple[Array,
     states = np.repeat(state[:, None], len(leaders) + 1, axis=1)
     turning = np.empty((*states.shape[:2], 6, _TURNING))
     rate, q, k = _copies(state)
+    slope = inertia_ratios.slopes(k)
     position, velocity = state[:, POSITION], state[:, VELOCITY]
     turning[:, 0] = _sensitivity(rate, q)
     for epoch, leader in enumerate(leaders, start=1):
         step = direction * known.step
         position, velocity = translation_step(position, velocity, leader, step)
-        rate, q = rotation_step(rate, q, k, leader, step)
+        rate, q = rotation_step(rate, q, slope, leader, step)
         states[:, epoch, POSITION], states[:, epoch, VELOCITY] = position, velocity
         states[:, epoch, RATE], states[:, epoch, Q] = rate[:, 0].real, q[:, 0].real
         turning[:, epoch] = _sensitivity(rate, q)
@@ -121,14 +122,14 @@ def propagate(known: Setup, state: Array, first: int, last: int) -> tuple[Array,
 
 def rewind(known: Setup, state: Array, epoch: int) -> Array:
     """State ``(run, n)`` at epoch 0 of the motion that passes through ``state`` at ``epoch``."""
-    result = state.copy()
+    result, slope = state.copy(), inertia_ratios.slopes(state[:, K])
     for k in range(epoch, 0, -1):
         leader = known.moments_of_step(k, -1)
         result[:, POSITION], result[:, VELOCITY] = translation_step(
             result[:, POSITION], result[:, VELOCITY], leader, -known.step
         )
         result[:, RATE], result[:, Q] = rotation_step(
-            result[:, RATE], result[:, Q], result[:, K], leader, -known.step
+            result[:, RATE], result[:, Q], slope, leader, -known.step
         )
     return result
 

@@ -4,7 +4,7 @@ Frames: ``l`` of the leader, which carries the cameras (see `debrisest.dynamics.
 ``t`` of the target, its principal axes. The state (15 + 3N) is the centre of mass in ``l`` and its
 velocity (Pesce et al. 2017: rho, rho-dot), the target's rate relative to ``l``, in ``l`` (omega),
 ``q_lt`` (q; D takes target axes to ``l``), the inertia ratios ``k`` and N points in ``t`` (P_i).
-Here the quaternion is additive, as in the paper. Departures from the printed equations:
+Departures from the printed equations:
 
 * Everywhere D is divided by the square of the quaternion's norm; with ``raw_rotation`` it is not,
   and a filter then uses the norm as a free scale of the cloud of points.
@@ -18,11 +18,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from debrisest.arrays import Array, IntArray
+from debrisest.arrays import IntArray
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import Leader, leader_orbit, translation_step
 from debrisest.dynamics.relative_rotation import cross, rotate, rotation_step, unrotate
-from debrisest.filters.model import Model
 from debrisest.sensors import stereo
 
 POSITION, VELOCITY, RATE = slice(0, 3), slice(3, 6), slice(6, 9)
@@ -95,7 +94,12 @@ def process(known: Setup, state: NDArray[Any], k: int) -> NDArray[Any]:
         state[..., POSITION], state[..., VELOCITY], leader, known.step
     )
     following[..., RATE], following[..., Q] = rotation_step(
-        state[..., RATE], state[..., Q], state[..., K], leader, known.step, known.raw_rotation
+        state[..., RATE],
+        state[..., Q],
+        inertia_ratios.slopes(state[..., K]),
+        leader,
+        known.step,
+        known.raw_rotation,
     )
     return following
 
@@ -127,31 +131,9 @@ def measurement(known: Setup, state: NDArray[Any], k: int) -> NDArray[Any]:
     return np.concatenate([rows, target_acceleration(known, state, k)], axis=-1)
 
 
-def additive_model(known: Setup, process_noise: Array, measurement_noise: Array) -> Model:
-    """Return the model for a filter whose errors are the components of the state.
-
-    Covariances ``(n, n)`` per step and ``(m, m)``; a correction is added, then the quaternion is
-    scaled to unit norm, as in the paper.
-    """
-    return Model(
-        process=lambda state, k: process(known, state, k),
-        measurement=lambda state, k: measurement(known, state, k),
-        process_noise=process_noise,
-        measurement_noise=measurement_noise,
-        error_names=error_names("q_lt_0 q_lt_1 q_lt_2 q_lt_3", known.points),
-        retract=_correct,
-    )
-
-
 def error_names(attitude: str, points: int) -> tuple[str, ...]:
     """Return the names of the errors; ``attitude`` holds those of the attitude, spaced."""
     axes = ("x", "y", "z")
     vectors = [f"{name}_{axis}" for name in ("position", "velocity", "rate") for axis in axes]
     features = [f"point_{i + 1}_{axis}" for i in range(points) for axis in axes]
     return (*vectors, *attitude.split(), "k1", "k2", *features)
-
-
-def _correct(state: Array, error: Array) -> Array:
-    corrected = state + error
-    corrected[..., Q] /= np.linalg.norm(corrected[..., Q], axis=-1, keepdims=True)
-    return corrected

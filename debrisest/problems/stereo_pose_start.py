@@ -6,6 +6,7 @@ from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_rotation import cross, matrix_of_cross
+from debrisest.filters import weights
 from debrisest.filters.covariance import solve
 from debrisest.problems.stereo_pose_model import (
     POINTS,
@@ -19,6 +20,7 @@ from debrisest.problems.stereo_pose_model import (
 )
 from debrisest.sensors import stereo
 
+_PASSES = 10
 _PRIOR_SHARE = 0.01
 """Part of the prior's information on the rates that the fit of the flow is given."""
 
@@ -92,9 +94,12 @@ def _rates(
     right = np.where(seen, right, 0.0).reshape(len(prior), -1, 1)
     at = prior[:, VELOCITY.start : RATE.stop]
     information = _PRIOR_SHARE * prior_sigma[VELOCITY.start : RATE.stop] ** -2.0
-    transposed = np.swapaxes(matrix, -1, -2)
-    both = solve(
-        transposed @ matrix + np.diag(information),
-        transposed @ right + (information * at)[..., None],
-    )[..., 0]
-    return both[:, :3], both[:, 3:]
+    both = at[..., None]
+    for _ in range(_PASSES):
+        weighted = weights.cauchy(right - matrix @ both) ** 2
+        transposed = np.swapaxes(matrix * weighted, -1, -2)
+        both = solve(
+            transposed @ matrix + np.diag(information),
+            transposed @ right + (information * at)[..., None],
+        )
+    return both[:, :3, 0], both[:, 3:, 0]

@@ -142,6 +142,11 @@ class Scenario(Keys):
         return [*parts, *self.observers.values(), *self.sensors.values()]
 
     @property
+    def frames(self) -> dict[str, str]:
+        """Return the axes and origin of simulated datasets whose name does not tell them."""
+        return {name: told for part in self.simulation for name, told in part.frames.items()}
+
+    @property
     def scored(self) -> Window:
         """Return the window in which principal axes are relabeled: by default the last third."""
         if self.tables.scored_window is None:

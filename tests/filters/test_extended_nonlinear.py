@@ -156,6 +156,7 @@ def test_iterated_update_is_the_most_probable_state(model, stop):
     assert np.abs(plain.state[:, 0] - exact).max() > 0.01
     assert history.iterations.min() > 2 and history.iterations.max() < 100
     assert (plain.iterations == 1).all()
+    assert np.array_equal(history.nis, plain.nis), "the innovation is that of the prior"
 
 
 def test_scaled_rule_ends_within_its_tolerance():

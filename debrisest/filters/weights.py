@@ -1,0 +1,37 @@
+"""Weights that keep outliers out. They multiply normalised residuals."""
+
+import numpy as np
+
+from debrisest.arrays import Array
+
+CAUCHY_SCALE = 3.0
+GATE = 5.0
+"""Innovations beyond this many sigma are rejected."""
+LIMIT = 4.5
+"""Residuals of the estimate itself beyond this are."""
+
+
+def cauchy(residual: Array) -> Array:
+    """Weights of Cauchy's loss, which lets go of outliers gradually."""
+    return np.asarray((1.0 + (residual / CAUCHY_SCALE) ** 2) ** -0.5)
+
+
+def hard(residual: Array) -> Array:
+    """One for residuals within `LIMIT`, zero beyond."""
+    return (np.abs(residual) < LIMIT).astype(np.float64)
+
+
+def innovation_gate(innovation: Array, derivative: Array, covariance: Array) -> Array:
+    """Weights ``(..., m)`` of normalised innovations, each row judged by itself.
+
+    `derivative` (..., m, n_e) is that of normalised rows, `covariance` (..., n_e, n_e) that of
+    the prediction.
+    """
+    spread = 1.0 + ((derivative @ covariance) * derivative).sum(-1)
+    return np.asarray(innovation**2 <= GATE**2 * spread, dtype=np.float64)
+
+
+def cauchy_loss(residual: Array) -> Array:
+    """Sum per run of Cauchy's loss of residuals ``(run, epoch, m)``."""
+    scaled = np.log1p((residual / CAUCHY_SCALE) ** 2)
+    return np.asarray(CAUCHY_SCALE**2 * scaled.sum((-2, -1)))

@@ -1,0 +1,193 @@
+"""The replay filter on linear models, where it is the Kalman filter, and its outcomes as values."""
+
+import numpy as np
+import pytest
+
+from debrisest.filters.evidence import linearize, weigh
+from debrisest.filters.gauss_newton import gauss_newton
+from debrisest.filters.replay import anchors, replay, smooth
+from debrisest.filters.replay_estimates import ReplayStatus
+from debrisest.filters.replay_model import ReplayModel
+
+F = np.array([[1.0, 0.5], [-0.1, 0.95]])
+H = np.array([[1.0, 0.0], [0.3, 1.0], [0.0, -2.0]])
+SIGMA = np.array([0.5, 1.0, 2.0])
+RUNS, EPOCHS = 4, 12
+COVARIANCE = np.array([[4.0, 0.5], [0.5, 1.0]])
+
+
+def power(k):
+    return np.linalg.matrix_power(F if k >= 0 else np.linalg.inv(F), abs(k))
+
+
+def linear_model(shape=lambda x: x, slope=lambda x: np.ones_like(x)):
+    """``y = H shape(x)``; sensitivities are the transition matrices, and the chart is skewed."""
+    skew = np.array([[1.0, 2.0], [0.0, 1.0]])
+
+    def trajectory(state, first, last):
+        ks = range(first, last + 1) if last >= first else range(first, last - 1, -1)
+        matrices = np.array([power(k - first) for k in ks])
+        states = (matrices @ state[:, None, :, None])[..., 0]
+        return states, np.broadcast_to(matrices, (len(state), *matrices.shape))
+
+    def rows(states, sensitivity, first, epochs):
+        assert states.shape[1] == len(epochs)
+        return shape(states) @ H.T, (H * slope(states)[..., None, :]) @ sensitivity
+
+    return ReplayModel(
+        trajectory=trajectory,
+        rows=rows,
+        transition=lambda sensitivity, first, last: sensitivity,
+        rewind=lambda state, epoch: state @ power(-epoch).T,
+        chart=lambda state: np.broadcast_to(skew, (len(state), 2, 2)),
+        inverse_chart=lambda state: np.broadcast_to(np.linalg.inv(skew), (len(state), 2, 2)),
+        retract=lambda state, error: state + error @ np.linalg.inv(skew).T,
+        difference=lambda state, reference: (state - reference) @ skew.T,
+        plain_difference=lambda state, reference: state - reference,
+        start=lambda prior, shown, epoch: prior,
+        sigma=SIGMA,
+        error_names=("a", "b"),
+    )
+
+
+def data(seed, shape=lambda x: x):
+    rng = np.random.default_rng(seed)
+    prior = rng.normal(size=(RUNS, 2))
+    truth = prior + rng.normal(size=(RUNS, 2)) @ np.linalg.cholesky(COVARIANCE).T
+    states = np.stack([truth @ power(k).T for k in range(EPOCHS)], axis=1)
+    measured = shape(states) @ H.T + SIGMA * rng.normal(size=(RUNS, EPOCHS, 3))
+    return prior, np.tile(COVARIANCE, (RUNS, 1, 1)), measured, truth
+
+
+def kalman(prior, covariance, measured):
+    """Textbook filter of one run; rows that are NaN are left out."""
+    state, history = prior, []
+    for k, y in enumerate(measured):
+        if k:
+            state, covariance = F @ state, F @ covariance @ F.T
+        seen = ~np.isnan(y)
+        h, nu = H[seen], y[seen] - H[seen] @ state
+        s = h @ covariance @ h.T + np.diag(SIGMA[seen] ** 2)
+        gain = covariance @ h.T @ np.linalg.inv(s)
+        nis = nu @ np.linalg.solve(s, nu) if seen.any() else 0.0
+        state, covariance = state + gain @ nu, covariance - gain @ s @ gain.T
+        history.append((state, covariance, nis, seen.sum()))
+    return history
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.25, 2.0])
+@pytest.mark.parametrize("missing", [False, True])
+def test_it_is_the_kalman_filter_on_a_linear_model(ratio, missing):
+    prior, covariance, measured, _ = data(0)
+    if missing:
+        measured[np.random.default_rng(1).random(measured.shape) < 0.4] = np.nan
+        measured[:, :2] = np.nan
+        measured[1, 7] = np.nan
+    keep = [0, 5]
+    estimates = replay(linear_model(), prior, covariance, measured, ratio=ratio, keep=keep)
+    assert np.all(estimates.status == ReplayStatus.CONVERGED)
+    np.testing.assert_array_equal(estimates.kept, [0, 5, EPOCHS - 1])
+    for run in range(RUNS):
+        expected = kalman(prior[run], covariance[run], measured[run])
+        for k, (state, spread, nis, dof) in enumerate(expected):
+            np.testing.assert_allclose(estimates.state[run, k], state, atol=1e-10)
+            np.testing.assert_allclose(estimates.sigma[run, k] ** 2, np.diag(spread), rtol=1e-9)
+            assert estimates.nis[run, k] == pytest.approx(nis, abs=1e-9)
+            assert estimates.nis_dof[run, k] == dof
+        for slot, k in enumerate(estimates.kept):
+            np.testing.assert_allclose(estimates.covariance[run, slot], expected[k][1], atol=1e-10)
+
+
+def test_the_smoother_is_the_least_squares_solution():
+    prior, covariance, measured, _ = data(2)
+    model = linear_model()
+    filtered = replay(model, prior, covariance, measured)
+    final = smooth(model, prior, covariance, measured, filtered, keep=range(EPOCHS))
+    root = np.linalg.inv(np.linalg.cholesky(COVARIANCE))
+    rows = np.concatenate([root, *(H @ power(k) / SIGMA[:, None] for k in range(EPOCHS))])
+    spread = np.linalg.inv(rows.T @ rows)
+    for run in range(RUNS):
+        right = np.concatenate([root @ prior[run], (measured[run] / SIGMA).ravel()])
+        start, cost, *_ = np.linalg.lstsq(rows, right)
+        for k in range(EPOCHS):
+            np.testing.assert_allclose(final.state[run, k], power(k) @ start, atol=1e-10)
+            np.testing.assert_allclose(
+                final.covariance[run, k], power(k) @ spread @ power(k).T, atol=1e-10
+            )
+        assert final.cost[run, -1] == pytest.approx(cost.item())
+
+
+def test_anchors_are_spaced_geometrically():
+    assert anchors(1, 100) == [1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 19, 24, 30, 37, 47, 58, 73, 91]
+    assert anchors(3, 7, 1.0) == [3, 4, 5, 6]
+    assert anchors(5, 5) == []
+
+
+def test_what_is_not_finite_is_a_value():
+    prior, covariance, measured, _ = data(3)
+    prior[0, 1] = np.nan
+    measured[2, 6, 0] = np.inf
+    estimates = replay(linear_model(), prior, covariance, measured)
+    expected = [ReplayStatus.NO_START, 0, ReplayStatus.DIVERGED, 0]
+    np.testing.assert_array_equal(estimates.status, expected)
+    np.testing.assert_array_equal(estimates.diverged_at, [0, -1, 6, -1])
+    assert np.isnan(estimates.state[0]).all()
+    assert np.isnan(estimates.state[2, 6:]).all()
+    assert np.isfinite(estimates.state[2, :6]).all()
+    clean = replay(linear_model(), prior[[1, 3]], covariance[[1, 3]], measured[[1, 3]])
+    np.testing.assert_allclose(estimates.state[[1, 3]], clean.state, rtol=0, atol=1e-13)
+    final = smooth(linear_model(), prior, covariance, measured, estimates)
+    np.testing.assert_array_equal(final.status, expected)
+    assert all(ReplayStatus(code).sentence for code in estimates.status)
+
+
+def test_without_measurements_the_prior_is_propagated():
+    prior, covariance, measured, _ = data(4)
+    measured[:] = np.nan
+    estimates = replay(linear_model(), prior, covariance, measured)
+    np.testing.assert_allclose(estimates.state[:, -1], prior @ power(EPOCHS - 1).T, atol=1e-10)
+    assert np.all(estimates.nis_dof == 0)
+
+
+def test_the_gate_finds_outliers_of_any_epoch():
+    """Also of the first, which no innovation gives away under a vague prior."""
+    prior, _, measured, _ = data(5)
+    covariance = np.tile(1e4 * np.eye(2), (RUNS, 1, 1))
+    clean = replay(linear_model(), prior, covariance, measured)
+    spoilt = measured.copy()
+    spoilt[:, 0, 0] += 60.0
+    spoilt[:, 5, 1] -= 80.0
+    model = linear_model()
+    gated, open_ = (replay(model, prior, covariance, spoilt, gate=g) for g in (True, False))
+    error = np.abs(gated.state[:, -1] - clean.state[:, -1])
+    assert np.all(error < 2.0 * clean.sigma[:, -1])
+    assert np.abs(open_.state[:, -1] - clean.state[:, -1]).max() > 5.0 * error.max()
+    np.testing.assert_array_equal(gated.rejected[:, 5] >= 1, True)
+    np.testing.assert_array_equal(open_.rejected, 0)
+
+
+def test_step_control_only_goes_down():
+    """A cubic sensor and a poor prior: plain Gauss-Newton steps overshoot."""
+    shape, slope = (lambda x: x**3), (lambda x: 3 * x**2)
+    model = linear_model(shape, slope)
+    prior, covariance, measured, truth = data(6, shape)
+    evidence = weigh(model, prior, covariance, measured)
+    start = 0.05 * np.sign(truth)
+    costs = [linearize(model, evidence, start, 8).cost]
+    for iterations in (2, 4, 8, 60):
+        solution = gauss_newton(model, evidence, start, 8, iterations)
+        costs.append(solution.at.cost)
+    assert np.all(np.diff(costs, axis=0) <= 0)
+    assert solution.converged.all()
+    at_truth = linearize(model, evidence, truth, 8).cost
+    assert np.median(solution.cost - at_truth) < 0
+
+
+def test_wrong_shapes_are_refused():
+    prior, covariance, measured, _ = data(7)
+    with pytest.raises(ValueError, match="need a covariance of shape"):
+        replay(linear_model(), prior, covariance[..., :1], measured)
+    with pytest.raises(ValueError, match="at least 1"):
+        replay(linear_model(), prior, covariance, measured, ratio=0.5)
+    with pytest.raises(ValueError, match="kept epochs"):
+        replay(linear_model(), prior, covariance, measured, keep=[EPOCHS])

@@ -1,0 +1,101 @@
+"""The replay filter and its smoother on the stereo pose problem."""
+
+import numpy as np
+import pytest
+
+from debrisest.assessment.bound import paired_errors
+from debrisest.assessment.consistency import chart_free
+from debrisest.filters.evidence import linearize, weigh
+from debrisest.filters.gauss_newton import move
+from debrisest.filters.replay import replay, smooth
+from debrisest.filters.replay_estimates import ReplayStatus
+from debrisest.problems.stereo_pose_replay import replay_model
+
+POINTS = 5
+
+
+@pytest.fixture(scope="module")
+def fast(experiment):
+    return experiment(16, 15, 1)
+
+
+def errors(test, states):
+    return test.model.plain_difference(states, test.truth)
+
+
+def test_filter_and_smoother_reach_the_bound(fast):
+    """Limits are three sigma or more of 16 runs, whatever the seed."""
+    last = fast.measured.shape[1] - 1
+    filtered = fast.estimate(also=[last])
+    final = smooth(fast.model, fast.prior, fast.covariance, fast.measured, filtered)
+    assert np.all(filtered.status == ReplayStatus.CONVERGED)
+    assert np.all(final.status == ReplayStatus.CONVERGED)
+    bound = paired_errors(
+        fast.model, fast.truth[:, 0], fast.prior, fast.covariance[0], fast.measured
+    )
+    for states, efficient in (
+        (filtered.state, bound.filter_error),
+        (final.state, bound.smoother_error),
+    ):
+        for block in (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12)):
+            size = np.linalg.norm(errors(fast, states)[:, -8:, block], axis=-1).mean(-1)
+            least = np.linalg.norm(efficient[:, -8:, block], axis=-1).mean(-1)
+            assert np.median(size) < 1.3 * np.median(least)
+    evidence = weigh(fast.model, fast.prior, fast.covariance, fast.measured)
+    at_truth = linearize(fast.model, evidence, fast.truth[:, 0], last).cost
+    for cost in (filtered.cost[:, last], final.cost[:, last]):
+        free = chart_free(at_truth, cost, 29)
+        assert free.min() > 0
+        assert 0.75 < free.mean() < 1.25
+    assert filtered.nis[:, 4:].sum() / filtered.nis_dof[:, 4:].sum() == pytest.approx(1, abs=0.06)
+
+
+def test_a_missing_row_is_a_row_left_out(experiment):
+    """A point that is never seen gives what a setup without its rows gives, but for itself."""
+    test = experiment(2, 7, 4)
+    hidden = test.measured.copy()
+    hidden.reshape(2, 7, POINTS, 9)[:, :, 4] = np.nan
+    sigma = test.model.sigma[:36]
+    plain = np.sqrt(np.diagonal(test.covariance[0]))
+    known = test.known._replace(points=4)
+    part = replay(
+        replay_model(known, sigma, plain[:26]),
+        test.prior[:, :27],
+        test.covariance[:, :26, :26],
+        test.measured[..., :36],
+        ratio=1.0,
+    )
+    whole = replay(test.model, test.prior, test.covariance, hidden, ratio=1.0)
+    sigma_of_part = part.sigma[:, -1, :9]
+    gap = np.abs(whole.state[:, -1, :9] - part.state[:, -1, :9])
+    assert np.all(gap < 0.05 * sigma_of_part)
+    np.testing.assert_allclose(whole.sigma[:, -1, :9], sigma_of_part, rtol=0.02)
+
+
+def test_outliers_are_kept_out_by_the_gate_only(experiment):
+    test = experiment(6, 9, 5)
+    rng = np.random.default_rng(6)
+    hit = rng.random(test.measured.shape) < 0.01
+    test.measured = test.measured + hit * 1e-3 * rng.choice([-1, 1], hit.shape)
+    gated, open_ = test.estimate(gate=True), test.estimate(gate=False)
+    for estimates, good in ((gated, True), (open_, False)):
+        normalized = (errors(test, estimates.state) / estimates.sigma)[:, -3:, 3:9]
+        assert (np.median(np.abs(normalized)) < 2.0) == good
+    assert gated.rejected.sum() > 0.5 * hit[:, 1:].sum()
+    assert open_.rejected.sum() == 0
+
+
+def test_a_run_alone_is_the_run_in_a_batch(fast):
+    alone = replay(fast.model, fast.prior[3:4], fast.covariance[3:4], fast.measured[3:4])
+    batch = fast.estimate()
+    np.testing.assert_allclose(alone.state[0], batch.state[3], rtol=0, atol=1e-8)
+
+
+def test_the_step_promises_what_it_keeps(fast):
+    """Near the minimum the cost falls by the decrement."""
+    evidence = weigh(fast.model, fast.prior, fast.covariance, fast.measured)
+    at = linearize(fast.model, evidence, fast.truth[:, 0], 14)
+    step = np.linalg.solve(at.information, at.gradient[..., None])[..., 0]
+    promised = (step * at.gradient).sum(-1)
+    after = linearize(fast.model, evidence, move(fast.model, at.state, step), 14).cost
+    assert np.median(np.abs(at.cost - after - promised) / promised) < 0.3
