@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from pandas import DataFrame
+
     from debrisest.plan import Selection
     from debrisest.scenario.load import LoadedScenario
     from debrisest.sweep import Machine
@@ -122,8 +124,12 @@ def table(
     check: Annotated[bool, typer.Option("--check", help="Exit 1 on unexpected verdicts.")] = False,
 ) -> None:
     """Write and print the tables of the results that are up to date."""
+    from debrisest.plan import check_selection
+
     selection = _selection(runs, case, estimator, False, "assess")
-    _exit(_show_tables(_loaded(configs, settings), out, selection, form, check))
+    scenarios = _loaded(configs, settings)
+    _told(partial(check_selection, scenarios, selection))
+    _exit(_show_tables(scenarios, out, selection, form, check))
 
 
 @app.command()
@@ -138,10 +144,13 @@ def plot(
     """Draw the figures of the results that are up to date, as PNG and SVG."""
 
     def draw() -> None:
+        from debrisest.plan import check_selection
         from debrisest.plots.draw import draw_all
 
         selection = _selection(runs, case, estimator, False, "assess")
-        for scenario in _load(configs, settings):
+        scenarios = _load(configs, settings)
+        check_selection(scenarios, selection)
+        for scenario in scenarios:
             for path in draw_all(scenario, out, selection):
                 print(path)
 
@@ -152,7 +161,7 @@ def plot(
 def validate(configs: Configs, settings: Settings = None) -> None:
     """Check scenario files and tell every problem with its line."""
     for scenario in _loaded(configs, settings):
-        estimators = ", ".join(scenario.any.estimators)
+        estimators = ", ".join(scenario.common.estimators)
         print(f"{scenario.path}: {len(scenario.cases)} cases, estimators: {estimators}")
 
 
@@ -191,9 +200,10 @@ def _bring(
     machine: "Machine",
     dry_run: bool,
 ) -> dict[str, str]:
-    from debrisest.plan import plan
+    from debrisest.plan import check_selection, plan
     from debrisest.sweep import bring_up_to_date
 
+    _told(partial(check_selection, scenarios, selection))
     if dry_run:
         steps = _told(lambda: [s for scenario in scenarios for s in plan(scenario, out, selection)])
         due = [step for step in steps if step.reason]
@@ -217,19 +227,22 @@ def _show_tables(
     """Write and print all tables; return whether a verdict was not the expected one."""
     from debrisest.sweep import chosen, tabulate, write_tables
     from debrisest.tables.cells import unexpected
-    from debrisest.tables.render import render
+    from debrisest.tables.render import render_all
 
     wrong: list[str] = []
+    shown: list[tuple[LoadedScenario, DataFrame]] = []
     for scenario in scenarios:
         rows, stale = _told(partial(tabulate, scenario, out, selection.runs))
-        means = scenario.any.tables.means
+        means = scenario.common.tables.means
         for step in stale[:1]:
             more = f" (and {len(stale) - 1} more)" if len(stale) > 1 else ""
             print(f"left out of the tables: {step.name}: {step.reason}{more}", file=sys.stderr)
         if not rows.empty:
             write_tables(scenario, out, rows)
-            print(render(scenario, chosen(rows, selection, means), form), end="")
+            shown.append((scenario, chosen(rows, selection, means)))
         wrong += unexpected(scenario, rows, partial(selection.asks_for, means=means))
+    if shown:
+        print(render_all(shown, form), end="")
     if check:
         for sentence in wrong:
             print(sentence, file=sys.stderr)

@@ -1,4 +1,7 @@
-"""A dask cluster behind the executor interface (extra ``dask``)."""
+"""A dask cluster behind the executor interface (extra ``dask``).
+
+Its workers read and write the files themselves: the folder of results must be a shared one.
+"""
 
 from collections.abc import Iterator
 from concurrent.futures import Executor
@@ -8,7 +11,7 @@ from debrisest.errors import UserError
 
 
 @contextmanager
-def dask_executor(address: str) -> Iterator[Executor]:
+def dask_executor(address: str) -> Iterator[tuple[Executor, int]]:
     """Yield the executor of the dask scheduler at ``dask:tcp://HOST:PORT``."""
     kind, _, scheduler = address.partition(":")
     if kind != "dask" or not scheduler:
@@ -22,4 +25,4 @@ def dask_executor(address: str) -> Iterator[Executor]:
     except (OSError, ValueError, TimeoutError):
         raise UserError(f"--executor {address}: no dask scheduler answers there") from None
     with client:
-        yield client.get_executor()
+        yield client.get_executor(), max(sum(client.nthreads().values()), 1)

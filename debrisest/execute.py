@@ -69,8 +69,11 @@ class WorkerPool(ProcessPoolExecutor):
 
 
 @contextmanager
-def executor(jobs: int, address: str | None = None) -> Iterator[Executor]:
-    """Yield an executor: this process, a pool of ``jobs`` spawned ones, or a dask cluster."""
+def executor(jobs: int, address: str | None = None) -> Iterator[tuple[Executor, int]]:
+    """Yield an executor and how many steps it computes at a time.
+
+    It is this process, a pool of ``jobs`` spawned ones, or a dask cluster.
+    """
     if address is not None:
         from debrisest.cluster import dask_executor
 
@@ -78,7 +81,7 @@ def executor(jobs: int, address: str | None = None) -> Iterator[Executor]:
             yield cluster
     else:
         with InProcess() if jobs == 1 else WorkerPool(jobs) as pool:
-            yield pool
+            yield pool, jobs
 
 
 def execute(steps: Sequence[Step], pool: Executor, width: int) -> Iterator[Outcome]:

@@ -3,14 +3,14 @@
 import hashlib
 import json
 from collections.abc import Container, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from debrisest import store
 from debrisest.errors import UserError
 from debrisest.scenario.load import Case, LoadedScenario
-from debrisest.scenario.problems import did_you_mean
+from debrisest.scenario.mistakes import allowed_names
 from debrisest.stages.pipeline import STAGES, stages_of
 
 RUNS_PER_FILE = 20
@@ -63,8 +63,9 @@ class Selection:
 
 def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step]:
     """Return every step that the selection needs, upstream first, with the reasons to run."""
-    cases = _chosen("case", selection.cases, list(scenario.cases))
-    estimators = _chosen("estimator", selection.estimators, list(scenario.any.estimators))
+    cases = [name for name in scenario.cases if name in (selection.cases or scenario.cases)]
+    known = list(scenario.common.estimators)
+    estimators = [name for name in known if name in (selection.estimators or known)]
     steps: list[Step] = []
     for name in cases:
         case = scenario.cases[name]
@@ -76,11 +77,19 @@ def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step
     return steps
 
 
-def _chosen(what: str, asked: Sequence[str] | None, known: list[str]) -> list[str]:
-    for name in asked or []:
-        if name not in known:
-            raise UserError(f"--{what} {name}: unknown {what}; {did_you_mean(name, known)}")
-    return [name for name in known if asked is None or name in asked]
+def check_selection(scenarios: Sequence[LoadedScenario], selection: Selection) -> None:
+    """Raise UserError for a name that is asked for and that no scenario has."""
+    cases = [name for scenario in scenarios for name in scenario.cases]
+    estimators = [name for scenario in scenarios for name in scenario.common.estimators]
+    asked = (("case", selection.cases, cases), ("estimator", selection.estimators, estimators))
+    problems = [
+        f"--{what} {name}: unknown {what}; {allowed_names(name, dict.fromkeys(known))}"
+        for what, names, known in asked
+        for name in names or []
+        if name not in known
+    ]
+    if problems:
+        raise UserError(problems)
 
 
 @dataclass(frozen=True)
@@ -92,10 +101,15 @@ class _Chunk:
     first: int
     runs: int
     selection: Selection
+    held: list[int] = field(default_factory=list)
+    """Runs of the files that were found and are of this scenario."""
 
     def steps(self, estimators: Sequence[str]) -> list[Step]:
+        """Return the steps; what is computed anew keeps as many runs as any file held."""
         simulate = self._step("simulate", "", ())
-        return [simulate, *self._estimator_steps(simulate, estimators)]
+        steps = [simulate, *self._estimator_steps(simulate, estimators)]
+        most = max(self.runs, *self.held)
+        return [replace(step, runs=most) if step.reason else step for step in steps]
 
     def _estimator_steps(self, simulate: Step, estimators: Sequence[str]) -> Iterator[Step]:
         for estimator in estimators:
@@ -115,12 +129,13 @@ class _Chunk:
         found = store.inspect(path)
         reason, notice = self._why(path, found, key, inputs, upstream)
         held = found.attributes.get("runs", 0) if found.attributes.get("stage_key") == key else 0
+        self.held.append(held)
         return Step(
             self.case,
             estimator,
             stage,
             self.first,
-            max(self.runs, held) if self.selection.force else self.runs,
+            self.runs,
             path,
             upstream,
             inputs,

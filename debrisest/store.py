@@ -6,8 +6,6 @@ h5py and xarray (``engine="h5netcdf"``) read them without this package.
 """
 
 import json
-import os
-import socket
 from collections.abc import Container, Mapping
 from datetime import UTC, datetime
 from enum import Enum
@@ -21,10 +19,11 @@ import h5py
 import numpy as np
 
 from debrisest.arrays import Data
-from debrisest.vocabulary import COORDINATES, VOCABULARY
+from debrisest.files import replacing
+from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, has_runs
 
 FORMAT = "debrisest checkpoint"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 _NO_COORDINATE = "This is a netCDF dimension but not a netCDF variable."
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -53,19 +52,14 @@ def write(
 
     ``frames`` becomes the attribute ``frame`` of the datasets it names.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.tmp")
-    try:
-        with h5py.File(temporary, "w", libver="latest", track_order=True) as file:
-            _write_attributes(file, attributes, data)
-            _write_data(file, data)
-            for name in data.keys() & (frames or {}).keys():
-                file[name].attrs["frame"] = (frames or {})[name]
-        _synchronise(temporary)
-        os.replace(temporary, path)
-        _synchronise(path.parent)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with (
+        replacing(path) as temporary,
+        h5py.File(temporary, "w", libver="latest", track_order=True) as file,
+    ):
+        _write_attributes(file, attributes, data)
+        _write_data(file, data)
+        for name in data.keys() & (frames or {}).keys():
+            file[name].attrs["frame"] = (frames or {})[name]
 
 
 def inspect(path: Path) -> Checkpoint:
@@ -102,27 +96,9 @@ def read(path: Path, runs: int | None = None, names: Container[str] = VOCABULARY
         for name, dataset in file.items():
             if name not in VOCABULARY or name not in names:
                 continue
-            has_runs = VOCABULARY[name].axes[0] == "run"
-            value = dataset[:runs] if has_runs else dataset[()]
+            value = dataset[:runs] if has_runs(name) else dataset[()]
             data[name] = np.array([t.decode() for t in value]) if _is_text(dataset) else value
     return data
-
-
-def remove_leftovers(folder: Path) -> None:
-    """Remove temporary files of processes of this machine that no longer run."""
-    for path in folder.rglob(".*.tmp"):
-        host, _, process = path.name.removesuffix(".tmp").rpartition(".")
-        if host.endswith(f".{socket.gethostname()}") and not _runs(process):
-            path.unlink(missing_ok=True)
-
-
-def _runs(process: str) -> bool:
-    """Return whether a process is there and not a zombie."""
-    try:
-        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
-    except (OSError, IndexError):
-        return False
-    return state not in "ZX"
 
 
 def _is_text(dataset: Any) -> bool:
@@ -164,6 +140,8 @@ def _write_data(file: Any, data: Data) -> None:
             scales[name] = dataset
             continue
         for axis, (label, length) in enumerate(zip(quantity.axes, value.shape)):
+            if AXIS_LENGTH.get(label, length) != length:
+                raise ValueError(f"{name} has {length} values along {label}")
             if label not in scales:
                 scales[label] = file.create_dataset(label, data=np.zeros(length))
                 scales[label].make_scale(f"{_NO_COORDINATE}{length:10d}")
@@ -175,14 +153,6 @@ def _create(file: Any, name: str, value: Any) -> Any:
         return file.create_dataset(name, data=value.tolist(), dtype=h5py.string_dtype())
     checked = value.size > 0 and value.ndim > 0
     return file.create_dataset(name, data=value.astype(np.float64), fletcher32=checked)
-
-
-def _synchronise(path: Path) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 @cache

@@ -7,11 +7,13 @@ from pathlib import Path
 import pandas as pd
 
 from debrisest import store
+from debrisest.errors import UserError
 from debrisest.execute import execute, executor, failures_of
+from debrisest.files import remove_leftovers, replacing
 from debrisest.plan import Selection, Step, plan
 from debrisest.progress import Progress, progress
 from debrisest.scenario.load import LoadedScenario
-from debrisest.tables.cells import cells, write_csv
+from debrisest.tables.cells import cells
 from debrisest.tables.render import render
 from debrisest.tables.results import load_results
 
@@ -29,8 +31,12 @@ def bring_up_to_date(
     scenarios: Sequence[LoadedScenario], out: Path, selection: Selection, machine: Machine
 ) -> dict[str, str]:
     """Run every step that has a reason to; return the runs that gave no result, with reasons."""
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"--out {out}: {error.strerror}; choose another folder") from None
     for scenario in scenarios:
-        store.remove_leftovers(out / scenario.name)
+        remove_leftovers(out / scenario.name)
     steps = [step for scenario in scenarios for step in plan(scenario, out, selection)]
     due = [step for step in steps if step.reason]
     with progress(len(due), machine.quiet) as told:
@@ -44,8 +50,8 @@ def bring_up_to_date(
 def _run(steps: list[Step], machine: Machine, told: Progress) -> dict[str, str]:
     """Run what is due; return the steps that wrote no file, with reasons."""
     errors: dict[str, str] = {}
-    with executor(machine.jobs, machine.cluster) as pool:
-        for outcome in execute(steps, pool, machine.jobs):
+    with executor(machine.jobs, machine.cluster) as (pool, width):
+        for outcome in execute(steps, pool, width):
             told.done(outcome.step.name)
             if outcome.error:
                 errors[outcome.step.name] = outcome.error
@@ -88,7 +94,6 @@ def chosen(rows: pd.DataFrame, selection: Selection, means: Container[str]) -> p
 
 def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> None:
     """Write ``tables.csv`` and beside it the tables as in the paper."""
-    folder = out / scenario.name
-    write_csv(rows, folder / "tables.csv")
-    for form in ("md", "tex"):
-        (folder / f"tables.{form}").write_text(render(scenario, rows, form), encoding="utf-8")
+    for form in ("csv", "md", "tex"):
+        with replacing(out / scenario.name / f"tables.{form}") as path:
+            path.write_text(render(scenario, rows, form), encoding="utf-8", newline="\n")

@@ -73,9 +73,12 @@ VOCABULARY: dict[str, Quantity] = {
     "covariance": Quantity(
         ("run", "covariance_time_s", "error_name", "error_column"), "", "covariance of the state"
     ),
-    "nis": Quantity(_TIME, "1", "normalised innovation squared"),
+    "nis": Quantity(_TIME, "1", "normalised innovation squared; assess: per dimension", "1"),
     "nis_dof": Quantity(_TIME, "1", "measured components at the epoch"),
-    "repairs": Quantity(_RUN, "1", "covariance repairs"),
+    "rejected": Quantity(_TIME, "1", "components that the gate rejected at the epoch"),
+    "reopened": Quantity(_RUN, "1", "times that the gate was reopened", "1"),
+    "updates": Quantity(_TIME, "1", "iterations of the update at the epoch"),
+    "repairs": Quantity(_RUN, "1", "covariance repairs", "1"),
     # assess
     "relabeling": Quantity(("run", "row", "column"), "1", "estimated to true principal axes"),
     "recovered_pitch": Quantity(_TIME, "rad", "pitch error of the recovered attitude", "deg"),
@@ -95,10 +98,14 @@ VOCABULARY: dict[str, Quantity] = {
     "inertia_2": Quantity(_TIME, "1", "error of principal moment 2 (unit norm)", "1"),
     "inertia_3": Quantity(_TIME, "1", "error of principal moment 3 (unit norm)", "1"),
     "convergence_time": Quantity(_RUN, "s", "rate error below its limit for good", "s"),
-    "nis_mean": Quantity(_TIME, "1", "normalised innovation squared per dimension", "1"),
 }
 
 _TABLE_SCALE = {("rad", "deg"): 180 / np.pi, ("rad/s", "deg/s"): 180 / np.pi, ("m", "km"): 1e-3}
+
+
+def has_runs(name: str) -> bool:
+    """Return whether a dataset's first axis is the run."""
+    return VOCABULARY[name].axes[0] == "run"
 
 
 def table_scale(name: str) -> float:

@@ -235,7 +235,7 @@ def test_a_file_without_truth_passes_through_all_stages(
             name = f"small/slow/{stage}-{estimator}.000000.h5"
             assert same_data(data[name], complete[name])
         assessed = data[f"small/slow/assess-{estimator}.000000.h5"]
-        assert {"nis_mean", "coverage", "pieces"} <= assessed.keys()
+        assert {"nis", "coverage", "pieces"} <= assessed.keys()
         assert not {"pitch", "rate", "recovered_pitch", "signs_right"} & assessed.keys()
         assert (assessed["failure"] == "").all()
 
@@ -245,8 +245,8 @@ def test_tables_without_truth_show_what_is_left(
 ) -> None:
     sweep(small, measured, "--case", "slow")
     rows, complete = cells(measured), cells(reference)
-    assert set(rows["quantity"]) == {"nis_mean"}
-    expected = complete[(complete["quantity"] == "nis_mean") & (complete["case"] == "slow")]
+    assert set(rows["quantity"]) == {"nis"}
+    expected = complete[(complete["quantity"] == "nis") & (complete["case"] == "slow")]
     assert rows["measured"].tolist() == expected["measured"].tolist()
 
 

@@ -123,7 +123,7 @@ class ConstantSpin(ProblemPart):
         return {"rate_b": about_z(history.state), "rate_b_sigma": about_z(history.sigma)}
 
     def assess(self, data, scored):
-        result = {"nis_mean": data["nis"] / np.maximum(data["nis_dof"], 1)}
+        result = {"nis": data["nis"] / np.maximum(data["nis_dof"], 1)}
         if "true_rate_b" in data:
             result["rate_3"] = (data["rate_b"] - data["true_rate_b"])[..., 2]
         return result
@@ -186,7 +186,7 @@ tables:
   layout:
     - {{table: spin, title: Spin rate, stage: filter, quantities: [rate_3], statistic: rms,
        windows: [end]}}
-    - {{table: spin, title: Consistency, stage: filter, quantities: [nis_mean], statistic: mean,
+    - {{table: spin, title: Consistency, stage: filter, quantities: [nis], statistic: mean,
        windows: [10-25 s]}}
 """
 
@@ -209,7 +209,7 @@ def test_from_a_file_to_a_table(config: Path, tmp_path: Path, sweep: Callable) -
     result = sweep(config, tmp_path / "out")
     assert result.exit_code == 0, result.stderr
     rows = pd.read_csv(StringIO((tmp_path / "out" / "wheel" / "tables.csv").read_text()))
-    rate, nis = (rows[rows["quantity"] == name].iloc[0] for name in ("rate_3", "nis_mean"))
+    rate, nis = (rows[rows["quantity"] == name].iloc[0] for name in ("rate_3", "nis"))
     assert (rate["case"], rate["estimator"], rate["unit"]) == ("nominal", "line", "deg/s")
     assert (rate["runs"], rate["failed"], rate["diverged"]) == (RUNS, 0, 0)
     # the square over the bound's is chi-squared with RUNS degrees: within 5 standard deviations

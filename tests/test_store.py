@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 import xarray
 
-from debrisest import store
+from debrisest import files, store
+from debrisest.files import remove_leftovers
 from debrisest.store import Condition
 from debrisest.vocabulary import VOCABULARY
 
@@ -128,16 +129,19 @@ def test_h5py_alone_finds_the_scales(file: Path) -> None:
 # interrupted writing
 
 
-@pytest.mark.parametrize("moment", ["_write_data", "_write_attributes", "_synchronise"])
+@pytest.mark.parametrize(
+    ("module", "moment"),
+    [(store, "_write_data"), (store, "_write_attributes"), (files, "_synchronise")],
+)
 def test_a_write_that_fails_leaves_the_old_file(
-    moment: str, file: Path, monkeypatch: pytest.MonkeyPatch, same_data: Callable
+    module: object, moment: str, file: Path, monkeypatch: pytest.MonkeyPatch, same_data: Callable
 ) -> None:
     before, content = store.read(file), file.read_bytes()
 
     def fail(*_: object) -> None:
         raise OSError("no space left on device")
 
-    monkeypatch.setattr(store, moment, fail)
+    monkeypatch.setattr(module, moment, fail)
     with pytest.raises(OSError, match="no space"):
         store.write(file, example(1), ATTRIBUTES)
     assert file.read_bytes() == content
@@ -168,14 +172,14 @@ def test_leftovers_of_dead_processes_are_removed(file: Path, tmp_path: Path) -> 
     own = file.with_name("notes.tmp")
     for path in (dead, alive, foreign, own):
         path.write_bytes(b"half")
-    store.remove_leftovers(tmp_path)
+    remove_leftovers(tmp_path)
     assert set(file.parent.iterdir()) == {file, alive, foreign, own}
 
 
 def test_leftovers_of_a_host_whose_name_ends_alike_stay(file: Path, tmp_path: Path) -> None:
     other = file.with_name(f".{file.name}.big{socket.gethostname()}.{dead_process()}.tmp")
     other.write_bytes(b"half")
-    store.remove_leftovers(tmp_path)
+    remove_leftovers(tmp_path)
     assert other.exists()
 
 
@@ -188,7 +192,7 @@ def test_leftovers_of_zombies_are_removed(file: Path, tmp_path: Path) -> None:
             time.sleep(0.005)
         left = file.with_name(f".{file.name}.{socket.gethostname()}.{zombie.pid}.tmp")
         left.write_bytes(b"half")
-        store.remove_leftovers(tmp_path)
+        remove_leftovers(tmp_path)
     assert not left.exists()
 
 

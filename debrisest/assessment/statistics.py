@@ -1,6 +1,8 @@
 """Statistics of an error over a window and over runs, with bootstrap intervals.
 
 Each statistic is a reduction over the window, which gives one figure per run, and one over runs.
+``median`` is that of the per-run RMS, ``p50`` that of the per-run mean of the absolute value; the
+``mean`` of an error with a sign is its bias, and leaves out epochs without a value.
 """
 
 from collections.abc import Callable
@@ -29,6 +31,14 @@ def _mean(values: Array) -> Array:
     return np.asarray(np.mean(values, axis=-1))
 
 
+def _mean_of_known(values: Array) -> Array:
+    """Mean over the epochs that have a value; NaN where none has."""
+    known = np.isfinite(values)
+    total = np.where(known, values, 0.0).sum(axis=-1)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(total / known.sum(axis=-1))
+
+
 def _mean_absolute(values: Array) -> Array:
     return np.asarray(np.mean(np.abs(values), axis=-1))
 
@@ -45,10 +55,16 @@ STATISTICS: dict[str, Statistic] = {
     "p70": Statistic(_mean_absolute, _percentile(70)),
     "p90": Statistic(_mean_absolute, _percentile(90)),
     "p100": Statistic(_mean_absolute, _percentile(100)),
-    "mean": Statistic(_mean, _mean),
+    "mean": Statistic(_mean_of_known, _mean),
     "value": Statistic(_mean, _mean),
     "share": Statistic(_mean, _mean),
 }
+
+
+def per_dimension(square: Array, freedom: Array) -> Array:
+    """Return a normalised square over its degrees of freedom, NaN where there is none."""
+    counted = np.where(freedom > 0, freedom, np.nan)
+    return np.asarray(square / counted)
 
 
 def window_mask(times: Array, window: tuple[float, float]) -> BoolArray:

@@ -41,7 +41,7 @@ class TorqueFree(SimulationPart):
 class GravityGradient(SimulationPart):
     """Rotation under the gravity-gradient torque, integrated numerically; needs an orbit."""
 
-    needs = ("true_inertia_b", "orbit_position")
+    needs = ("true_inertia_b", "orbit_position", "orbit_velocity")
     gives = ("true_q_ib", "true_rate_b")
     kind: Literal["gravity_gradient"]
     q_ib: UnitQuaternion = [1.0, 0.0, 0.0, 0.0]

@@ -35,7 +35,7 @@ class Drift(SimulationPart):
     """Drifts freely from a point and a velocity in the target's Hill frame."""
 
     needs = ("orbit_position", "orbit_velocity")
-    gives = ("true_position",)
+    gives = ("true_position", "true_velocity")
     frames = {"true_position": _RELATIVE, "true_velocity": _RELATIVE}
     kind: Literal["drift"]
     position_m: Vector3

@@ -3,13 +3,15 @@
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from debrisest.arrays import Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import kepler
 from debrisest.roles import Positive, SimulationPart
+
+EARTH_RADIUS_KM = 6378.137
 
 
 class KeplerOrbit(SimulationPart):
@@ -23,6 +25,16 @@ class KeplerOrbit(SimulationPart):
     raan_deg: float = 0.0
     argument_of_periapsis_deg: float = 0.0
     true_anomaly_deg: float = 0.0
+
+    @model_validator(mode="after")
+    def _above_the_ground(self) -> "KeplerOrbit":
+        perigee = self.semi_major_axis_km * (1 - self.eccentricity)
+        if perigee < EARTH_RADIUS_KM:
+            raise ValueError(
+                f"the perigee lies {perigee:g} km from the Earth's centre, below its surface; "
+                "semi_major_axis_km is in kilometres"
+            )
+        return self
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return position and velocity in Earth-centred inertial axes, the same in every run."""

@@ -35,6 +35,8 @@ class SignSearch(Keys):
     beam: Count = 2
     first_iterations: Count = 60
     iterations: Count = 8
+    splitting: Positive = Field(0.1, description="as of the recovery, for the hypotheses")
+    relaxation: Annotated[float, Field(gt=0, lt=2)] = 1.6
 
     def scorer(self) -> Callable[[Solution], Array]:
         """Return the penalty of a hypothesis, the lower the better."""
@@ -107,6 +109,8 @@ class BasisPursuit(RecoveryPart):
             search.scorer(),
             ratio=self.dictionary_ratio,
             penalty=self.penalty,
+            splitting=search.splitting,
+            relaxation=search.relaxation,
             first=search.first_pieces,
             beam=search.beam,
             first_iterations=search.first_iterations,

@@ -15,7 +15,7 @@ from debrisest.target.visibility import back_face_visible
 class FeaturePoints(SimulationPart):
     """Coordinates of the visible features relative to the chaser, in inertial axes."""
 
-    needs = ("true_point_b", "true_q_ib", "true_position")
+    needs = ("true_point_b", "true_normal_b", "true_q_ib", "true_position")
     gives = ("measured_point",)
     kind: Literal["feature_points"]
     noise_m: NonNegative

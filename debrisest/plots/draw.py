@@ -13,22 +13,34 @@ from matplotlib.figure import Figure
 from debrisest.arrays import Data
 from debrisest.errors import UserError
 from debrisest.plan import Selection, plan
-from debrisest.plots import error_over_time, rates, raw_quaternion, recovered_quaternion
+from debrisest.plots import (
+    error_over_time,
+    histograms,
+    nees_over_time,
+    pose_errors,
+    rates,
+    raw_quaternion,
+    recovered_quaternion,
+)
 from debrisest.plots.files import write
 from debrisest.plots.gather import Source, all_runs, single_runs
 from debrisest.scenario.load import LoadedScenario
+from debrisest.tables.cells import Results
 from debrisest.tables.results import load_results
 
 
 class Kind(NamedTuple):
     """A figure: how it is drawn, from which datasets, and whether of one run or of all runs.
 
-    What it draws of further datasets, such as a truth, is up to the figure.
+    What it draws of further datasets, such as a truth, is up to the figure. One of all runs is
+    given those in ``also`` if there are any, and may be drawn of each case by itself.
     """
 
     draw: Callable[[Data, str], Figure]
     needs: tuple[str, ...]
     of_all_runs: bool = False
+    of_each_case: bool = False
+    also: tuple[str, ...] = ()
 
 
 FIGURES: dict[str, Kind] = {
@@ -39,6 +51,21 @@ FIGURES: dict[str, Kind] = {
     "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma")),
     "error_over_time": Kind(
         error_over_time.error_over_time, error_over_time.QUANTITIES, of_all_runs=True
+    ),
+    "pose_errors": Kind(pose_errors.pose_errors, pose_errors.DATASETS[:1]),
+    "histograms": Kind(
+        histograms.histograms,
+        histograms.QUANTITIES[:1],
+        of_all_runs=True,
+        of_each_case=True,
+        also=histograms.QUANTITIES[1:],
+    ),
+    "nees_over_time": Kind(
+        nees_over_time.nees_over_time,
+        ("nees",),
+        of_all_runs=True,
+        of_each_case=True,
+        also=("nees_dof",),
     ),
 }
 
@@ -71,4 +98,16 @@ def _sources(
                 yield name, source
     for name, kind in FIGURES.items():
         if kind.of_all_runs:
-            yield from ((name, source) for source in all_runs(scenario, results, kind.needs))
+            yield from ((name, source) for source in _of_all_runs(scenario, results, kind))
+
+
+def _of_all_runs(scenario: LoadedScenario, results: Results, kind: Kind) -> Iterator[Source]:
+    """Return all runs of an estimator: of all cases, or of each case by itself."""
+    if not kind.of_each_case:
+        yield from all_runs(scenario, results, kind.needs)
+        return
+    for (case, estimator), result in results.items():
+        quantities = [*kind.needs, *(name for name in kind.also if name in result.errors)]
+        for source in all_runs(scenario, {(case, estimator): result}, quantities):
+            context = source.context.replace("1 case,", f"case {case},", 1)
+            yield source._replace(names=(case, estimator), context=context)

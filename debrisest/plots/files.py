@@ -1,7 +1,5 @@
 """Figures on disk, as PNG and SVG."""
 
-import os
-import socket
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -9,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from debrisest.files import replacing
 from debrisest.plots.style import style
 
 FORMATS: dict[str, dict[str, Any]] = {
@@ -24,18 +23,12 @@ _NO_MARKER = (None, "None", "none", " ", "")
 
 def write(figure: Figure, folder: Path, name: str) -> Iterator[Path]:
     """Write a figure in every format, each in one step; yield the paths."""
-    folder.mkdir(parents=True, exist_ok=True)
     _rasterise_dense(figure)
     for form, options in FORMATS.items():
         path = folder / f"{name}.{form}"
-        temporary = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.tmp")
-        try:
-            with style():
-                figure.savefig(temporary, format=form, **options)
-            figure.set_layout_engine("none")
-            os.replace(temporary, path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with replacing(path) as temporary, style():
+            figure.savefig(temporary, format=form, **options)
+        figure.set_layout_engine("none")
         yield path
 
 

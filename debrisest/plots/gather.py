@@ -9,9 +9,9 @@ from debrisest import store
 from debrisest.arrays import Array, BoolArray, Data
 from debrisest.plan import Step
 from debrisest.scenario.load import LoadedScenario
-from debrisest.stages.isolate import has_runs
 from debrisest.tables.cells import Results
 from debrisest.tables.results import Result
+from debrisest.vocabulary import has_runs
 
 Chunks = dict[int, list[Step]]
 """The steps of one case and estimator by their first run, upstream first."""
@@ -36,7 +36,7 @@ def single_runs(
             run, data = found
             context = f"{scenario.name}, case {case}, estimator {estimator}, run {run}"
             result = results.get((case, estimator))
-            if result is not None and result.diverged(scenario.any.tables.diverged)[run]:
+            if result is not None and result.diverged(scenario.common.tables.diverged)[run]:
                 context += " (its filter diverged)"
             yield Source((case, estimator), context, data)
 
@@ -48,7 +48,7 @@ def all_runs(
 
     Where the scenario's tables have means, the cases are those of the means.
     """
-    averaged = {case for cases in scenario.any.tables.means.values() for case in cases}
+    averaged = {case for cases in scenario.common.tables.means.values() for case in cases}
     for estimator in dict.fromkeys(estimator for _, estimator in results):
         mine = {
             case: result
@@ -117,7 +117,7 @@ def _pooled(
 def _kept(scenario: LoadedScenario, result: Result, quantities: Sequence[str]) -> BoolArray:
     """Return which runs (run,) are finite to the end and break no rule of divergence."""
     finite = [np.isfinite(result.errors[name][:, -1]) for name in quantities]
-    lost = result.diverged(scenario.any.tables.diverged)
+    lost = result.diverged(scenario.common.tables.diverged)
     return np.asarray(result.good & ~lost & np.all(finite, axis=0))
 
 

@@ -19,6 +19,7 @@ from debrisest.arrays import Array, Data
 from debrisest.assessment.attitude import attitude_errors, true_feature_attitude
 from debrisest.assessment.convergence import convergence_time
 from debrisest.assessment.principal_axes import best_relabeling
+from debrisest.assessment.statistics import per_dimension, window_mask
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.dynamics.inertia import principal_axes
@@ -167,12 +168,13 @@ class TumblingAttitude(ProblemPart):
 
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors of attitude, rate and inertia in true principal axes, if known."""
-        result: Data = {"nis_mean": data["nis"] / np.maximum(data["nis_dof"], 1)}
+        result: Data = {"nis": per_dimension(data["nis"], data["nis_dof"])}
+        result["repairs"] = data["repairs"]
         if "true_q_ib" not in data:
             return result
         moments, axes = principal_axes(data["true_inertia_b"])
         rate = data["true_rate_b"] @ axes
-        inside = (data["time_s"] >= scored[0]) & (data["time_s"] < scored[1])
+        inside = window_mask(data["time_s"], scored)
         relabeling = best_relabeling(data["rate_b"][:, inside], rate[:, inside])
         return (
             result

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator, Mapping
 
+from debrisest.assessment.statistics import window_mask
 from debrisest.catalog import CATALOG, kind_of
 from debrisest.roles import Part
 from debrisest.scenario.document import KeyPath
-from debrisest.scenario.problems import did_you_mean
+from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.schema import Scenario, Tables, window_of
 
 MOST_EPOCHS = 10_000_000
@@ -21,6 +22,8 @@ def scenario_problems(scenario: Scenario) -> Found:
     if not 2 <= epochs <= MOST_EPOCHS:
         yield ("step_s",), f"gives {epochs:.3g} epochs; from 2 to {MOST_EPOCHS} are possible"
         return
+    if abs(epochs - round(epochs)) > 1e-9 * epochs:
+        yield ("duration_s",), f"must be a whole number of steps of {scenario.step_s:g} s"
     yield from _parts_that_lack_data(scenario)
     yield from _windows(scenario)
 
@@ -33,28 +36,21 @@ def file_problems(cases: Mapping[str, Scenario]) -> Found:
             yield ("cases", name), "this name is taken by a file of results; choose another"
         if list(scenario.estimators) != list(first.estimators):
             yield ("cases", name), "all cases of a scenario must have the same estimators"
+        if scenario.tables != first.tables:
+            yield ("cases", name, "tables"), "tables belong to the whole file, not to a case"
     yield from _unknown_cases(first.tables, list(cases))
 
 
 def _parts_that_lack_data(scenario: Scenario) -> Found:
     given: set[str] = set()
-    for path, part in _simulation(scenario):
-        yield from _lacks(path, part, given)
+    for name, part in scenario.simulation.items():
+        yield from _lacks(tuple(name.split(".", 1)), part, given)
     for name, estimator in scenario.estimators.items():
         here = set(given)
         for role in ("recovery", "start", "problem"):
             part = getattr(estimator, role)
             if part is not None:
                 yield from _lacks(("estimators", name, role), part, here)
-
-
-def _simulation(scenario: Scenario) -> Iterator[tuple[KeyPath, Part]]:
-    for role in ("target", "orbit", "motion"):
-        if getattr(scenario, role) is not None:
-            yield (role,), getattr(scenario, role)
-    for role in ("observers", "sensors"):
-        for name, part in getattr(scenario, role).items():
-            yield (role, name), part
 
 
 def _lacks(path: KeyPath, part: Part, given: set[str]) -> Found:
@@ -71,6 +67,8 @@ def _lacks(path: KeyPath, part: Part, given: set[str]) -> Found:
             f"{kind_of(type(part))} needs {', '.join(missing)}, which no part before it gives; "
             f"add one of: {', '.join(givers)}",
         )
+    for name in sorted(set(part.gives) & given):
+        yield path, f"{name} is given by an earlier part already; only one part may give it"
     given.update(part.gives)
 
 
@@ -92,6 +90,8 @@ def _windows(scenario: Scenario) -> Found:
     for path, window in named:
         if window_of(window, duration)[1] > duration:
             yield path, f"{window} goes beyond the scenario, which lasts {duration:g} s"
+        elif not window_mask(scenario.clock.times, window_of(window, duration)).any():
+            yield path, f"{window} holds no epoch"
 
 
 def _unknown_cases(tables: Tables, cases: list[str]) -> Found:
@@ -109,4 +109,4 @@ def _unknown_cases(tables: Tables, cases: list[str]) -> Found:
 
 
 def _unknown(case: str, known: list[str]) -> str:
-    return f"unknown case {case!r}; {did_you_mean(case, known)}"
+    return f"unknown case {case!r}; {allowed_names(case, known)}"

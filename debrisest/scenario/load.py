@@ -22,7 +22,7 @@ from debrisest.scenario.document import (
     parse,
     sub_document,
 )
-from debrisest.scenario.problems import did_you_mean, problems_of
+from debrisest.scenario.mistakes import allowed_names, problems_of
 from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
 
 NOMINAL = "nominal"
@@ -69,7 +69,7 @@ class LoadedScenario(NamedTuple):
         return self.path.stem
 
     @property
-    def any(self) -> Scenario:
+    def common(self) -> Scenario:
         """Return one case's scenario, for what does not differ between cases."""
         return next(iter(self.cases.values())).scenario
 
@@ -127,9 +127,12 @@ def _override(text: str, document: Document) -> Document:
     if key.split(".")[0] in ("cases", "grid"):
         raise UserError(f"{place}: cases and grid cannot be set, since --set goes on every case")
     role, *named = key.split(".")
+    for varied in document.value.get("grid") or {}:
+        if f"{varied}.".startswith(f"{key}.") or f"{key}.".startswith(f"{varied}."):
+            raise UserError(f"{place}: the grid varies {varied} and names its cases after it")
     known = document.value.get(role)
     if role in _NAMED and isinstance(known, dict) and named and named[0] not in known:
-        raise UserError(f"{place}: unknown name {named[0]!r}; {did_you_mean(named[0], known)}")
+        raise UserError(f"{place}: unknown name {named[0]!r}; {allowed_names(named[0], known)}")
     return _nested(tuple(key.split(".")), parsed.value["value"], place)
 
 

@@ -135,16 +135,18 @@ class Scenario(Keys):
         return Clock(self.duration_s, self.step_s)
 
     @property
-    def simulation(self) -> list[SimulationPart]:
+    def simulation(self) -> dict[str, SimulationPart]:
         """Return the parts of the simulation in the order in which data passes through them."""
-        alone = (self.target, self.orbit, self.motion)
-        parts = [part for part in alone if part is not None]
-        return [*parts, *self.observers.values(), *self.sensors.values()]
+        alone = {"target": self.target, "orbit": self.orbit, "motion": self.motion}
+        parts = {name: part for name, part in alone.items() if part is not None}
+        parts |= {f"observers.{name}": part for name, part in self.observers.items()}
+        return parts | {f"sensors.{name}": part for name, part in self.sensors.items()}
 
     @property
     def frames(self) -> dict[str, str]:
         """Return the axes and origin of simulated datasets whose name does not tell them."""
-        return {name: told for part in self.simulation for name, told in part.frames.items()}
+        parts = self.simulation.values()
+        return {name: told for part in parts for name, told in part.frames.items()}
 
     @property
     def scored(self) -> Window:

@@ -7,7 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from debrisest.arrays import Data
-from debrisest.vocabulary import VOCABULARY
+from debrisest.vocabulary import has_runs
+
+MACHINE_FAILURES = (MemoryError, OSError)
+"""What is no fault of a run: the step is not finished, and is tried again next time."""
 
 
 def isolate(compute: Callable[[Data], Data], data: Data) -> Data:
@@ -24,19 +27,18 @@ def isolate(compute: Callable[[Data], Data], data: Data) -> Data:
     if len(everyone):
         try:
             results = [(everyone, compute(_take(data, everyone)))]
+        except MACHINE_FAILURES:
+            raise
         except Exception:
             for run in everyone:
                 try:
                     results.append((np.array([run]), compute(_take(data, np.array([run])))))
+                except MACHINE_FAILURES:
+                    raise
                 except Exception as error:
                     failure[run] = f"{type(error).__name__}: {error}"
     result = _scatter(results, runs) if results else {}
     return {**result, "run": data["run"], "failure": np.array(failure)}
-
-
-def has_runs(name: str) -> bool:
-    """Return whether a dataset's first axis is the run."""
-    return VOCABULARY[name].axes[0] == "run"
 
 
 def _take(data: Data, runs: NDArray[np.intp]) -> Data:

@@ -12,12 +12,11 @@ VERSION = 1
 def inputs(case: Case, _: str) -> dict[str, Any]:
     """Return everything that the result of this stage depends on."""
     scenario = case.scenario
-    parts = ("target", "orbit", "motion", "observers", "sensors")
     return {
         "version": VERSION,
         "case": case.name,
-        **scenario.model_dump(mode="json", include={"seed", "duration_s", "step_s", *parts}),
-        "part_versions": [part.version for part in scenario.simulation],
+        **scenario.model_dump(mode="json", include={"seed", "duration_s", "step_s"}),
+        **{name: part.fingerprint() for name, part in scenario.simulation.items()},
     }
 
 
@@ -26,6 +25,6 @@ def run(case: Case, _: str, data: Data) -> Data:
     scenario = case.scenario
     draws = Draws(scenario.seed, case.name, data["run"].astype(int).tolist())
     result: Data = {"time_s": scenario.clock.times}
-    for part in scenario.simulation:
+    for part in scenario.simulation.values():
         result |= part.simulate(result, scenario.clock, draws)
     return result

@@ -2,7 +2,6 @@
 
 import zlib
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,7 +30,7 @@ def cells(scenario: LoadedScenario, results: Results) -> pd.DataFrame:
     published = published_values(scenario)
     rows = [
         _row(key, estimator, table, scenario, results, published.get(key))
-        for table in scenario.any.tables.layout
+        for table in scenario.common.tables.layout
         for key, estimator in _keys(table, scenario)
     ]
     return pd.DataFrame([row for row in rows if row is not None], columns=COLUMNS)
@@ -73,10 +72,10 @@ def _disagreement(row: Mapping[Hashable, Any], entry: Published, expected: list[
 
 
 def _keys(table: Table, scenario: LoadedScenario) -> Iterator[tuple[CellKey, str]]:
-    names = table.cases or [*scenario.cases, *scenario.any.tables.means]
+    names = table.cases or [*scenario.cases, *scenario.common.tables.means]
     for window in table.windows:
         for case in names:
-            for estimator in scenario.any.estimators:
+            for estimator in scenario.common.estimators:
                 for quantity in table.quantities:
                     yield CellKey(table.table, case, quantity, table.statistic, window), estimator
 
@@ -89,7 +88,7 @@ def _row(
     results: Results,
     published: Published | None,
 ) -> dict[str, object] | None:
-    tables = scenario.any.tables
+    tables = scenario.common.tables
     members = tables.means.get(key.case, [key.case])
     parts = [results.get((case, estimator)) for case in members]
     dataset = _dataset(table, key.quantity)
@@ -143,11 +142,3 @@ def _figures(
 def _rounded(value: float) -> float:
     """Keep six digits, so that the last bits of a sum never show in a table."""
     return float(f"{value:.6g}")
-
-
-def write_csv(rows: pd.DataFrame, path: Path) -> None:
-    """Write the tidy table in one step."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.tmp")
-    rows.to_csv(temporary, index=False, lineterminator="\n")
-    temporary.replace(path)

@@ -22,7 +22,7 @@ class Sheet(NamedTuple):
 def sheets(scenario: LoadedScenario, cells: pd.DataFrame) -> list[Sheet]:
     """Return one sheet for each table and window of the scenario that has cells."""
     found = []
-    for table in scenario.any.tables.layout:
+    for table in scenario.common.tables.layout:
         for window in table.windows:
             chosen = cells[
                 (cells["table"] == table.table)

@@ -36,7 +36,7 @@ class Published(NamedTuple):
 
 def published_values(scenario: LoadedScenario) -> dict[CellKey, Published]:
     """Return the published values that a scenario names, if it names any."""
-    file = scenario.any.tables.published
+    file = scenario.common.tables.published
     return load_published(scenario.path.parent / file) if file else {}
 
 

@@ -20,6 +20,16 @@ def render(scenario: LoadedScenario, cells: pd.DataFrame, form: str) -> str:
     return FORMS[form](scenario, cells)
 
 
+def render_all(tables: list[tuple[LoadedScenario, pd.DataFrame]], form: str) -> str:
+    """Return the tables of several scenarios; in CSV and JSON a column tells them apart."""
+    if len(tables) > 1 and form in ("csv", "json"):
+        named = [cells.assign(scenario=scenario.name) for scenario, cells in tables]
+        together = pd.concat(named, ignore_index=True)
+        columns = ["scenario", *together.columns.drop("scenario")]
+        return render(tables[0][0], together[columns], form)
+    return "".join(render(scenario, cells, form) for scenario, cells in tables)
+
+
 def _csv(_: LoadedScenario, cells: pd.DataFrame) -> str:
     return str(cells.to_csv(index=False, lineterminator="\n"))
 
@@ -29,16 +39,18 @@ def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
 
 
 def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    parts = [f"# {scenario.any.title}", scenario.any.source, LEGEND]
+    legend = LEGEND if cells["published"].notna().any() else ""
+    parts = [f"# {scenario.common.title}", scenario.common.source, legend]
     for sheet in sheets(scenario, cells):
         lines = [sheet.heads, ["---"] * len(sheet.heads), *sheet.rows]
-        body = "\n".join(f"| {' | '.join(line)} |" for line in lines)
+        escaped = [[text.replace("|", "\\|") for text in line] for line in lines]
+        body = "\n".join(f"| {' | '.join(line)} |" for line in escaped)
         parts.append(f"## Table {sheet.number}: {sheet.title}\n\n{body}")
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
 def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    parts = [f"% {scenario.any.title}\n% {LEGEND}"]
+    parts = [f"% {scenario.common.title}\n% {LEGEND}"]
     for sheet in sheets(scenario, cells):
         head, *rows = (
             " & ".join(_escaped(text) for text in line) + r" \\"
@@ -46,7 +58,7 @@ def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
         )
         parts.append(
             "\\begin{table}\n"
-            f"\\caption{{{_escaped(f'Table {sheet.number}: {sheet.title}')}}}\n"
+            f"\\caption{{{_escaped(f'Table {sheet.number}: {sheet.title}. {LEGEND}')}}}\n"
             f"\\begin{{tabular}}{{{'l' * len(sheet.heads)}}}\n\\hline\n{head}\n\\hline\n"
             + "\n".join(rows)
             + "\n\\hline\n\\end{tabular}\n\\end{table}"
@@ -55,9 +67,10 @@ def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
 
 
 def _escaped(text: str) -> str:
+    text = text.replace("\\", r"\textbackslash ")
     for character in "&%$#_{}":
         text = text.replace(character, "\\" + character)
-    return text.replace("<", "$<$").replace(">", "$>$")
+    return text.replace("^", r"\^{}").replace("~", r"\~{}").replace("<", "$<$").replace(">", "$>$")
 
 
 def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
@@ -67,7 +80,8 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
             title = escape(f"Table {sheet.number}: {sheet.title}")
             console.print(f"\n[bold]{title}[/]", soft_wrap=True)
             console.print(_rich_table(sheet))
-        console.print(f"{LEGEND}\n", style="dim", soft_wrap=True)
+        if cells["published"].notna().any():
+            console.print(f"{LEGEND}\n", style="dim", soft_wrap=True)
     return capture.get()
 
 

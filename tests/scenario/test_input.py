@@ -396,7 +396,7 @@ def test_odd_values_are_refused(name: str, small: Path) -> None:
 @pytest.mark.parametrize("name", ["date", "base_60"])
 def test_what_other_loaders_read_as_a_date_or_a_number_is_a_text(name: str, small: Path) -> None:
     edited(small, "title: A small tumbling body", f"title: {ODD_VALUES[name]}")
-    assert load_scenario(small).any.title == ODD_VALUES[name]
+    assert load_scenario(small).common.title == ODD_VALUES[name]
 
 
 def test_a_seed_that_no_file_can_hold_is_refused(small: Path, sweep: Any) -> None:
@@ -420,7 +420,7 @@ def test_shipped_scenarios_are_valid(shipped: Path, cli: Any) -> None:
 )
 def test_numbers(written: str, value: float, small: Path) -> None:
     edited(small, "noise_m: 1e-2", f"noise_m: {written}")
-    sensor = load_scenario(small).any.sensors["points"]
+    sensor = load_scenario(small).common.sensors["points"]
     assert sensor.noise_m == value
     assert isinstance(sensor.noise_m, float)
 

@@ -23,7 +23,7 @@ def problems_of(
     return found
 
 
-def did_you_mean(given: str, allowed: Iterable[str]) -> str:
+def allowed_names(given: str, allowed: Iterable[str]) -> str:
     """Return the allowed names, and the one that was probably meant."""
     names = list(allowed)
     close = difflib.get_close_matches(given, names, n=1, cutoff=0.6)
@@ -54,15 +54,15 @@ def _message(detail: ErrorDetails, model: type[BaseModel]) -> str:
         return "this key is missing"
     if kind == "extra_forbidden":
         allowed = _allowed_keys(model, detail["loc"])
-        return f"unknown key; {did_you_mean(str(detail['loc'][-1]), allowed)}"
+        return f"unknown key; {allowed_names(str(detail['loc'][-1]), allowed)}"
     if kind == "union_tag_not_found":
         return "this key is missing: it says which kind of part this is"
     if kind == "union_tag_invalid":
         names = [name.strip("' ") for name in context["expected_tags"].split(",")]
-        return f"unknown kind {context['tag']!r}; {did_you_mean(context['tag'], names)}"
+        return f"unknown kind {context['tag']!r}; {allowed_names(context['tag'], names)}"
     if kind == "literal_error":
         names = [n.strip("' ") for n in context["expected"].replace(" or ", ",").split(",")]
-        return f"unknown value {given!r}; {did_you_mean(str(given), names)}"
+        return f"unknown value {given!r}; {allowed_names(str(given), names)}"
     if kind == "value_error":
         return str(context["error"])
     said = detail["msg"][0].lower() + detail["msg"][1:]

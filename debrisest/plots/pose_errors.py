@@ -1,0 +1,92 @@
+"""Errors of one run's pose, rates and inertia ratios (Pesce et al. 2017, Figs. 5-10, 17-20)."""
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from debrisest.arrays import Array, Data
+from debrisest.plots.axes import heading, legend_below, time_axis, unit
+from debrisest.plots.style import AXIS_COLOURS, GREY, WIDTH, styled
+from debrisest.vocabulary import table_scale
+
+
+class _Group(NamedTuple):
+    """Components in one row of panels: their datasets, and the quantity whose unit they have."""
+
+    error: str
+    sigma: str
+    quantity: str
+    labels: tuple[str, ...]
+
+
+_AXES = ("x", "y", "z")
+_GROUPS = (
+    _Group("position_error", "position_sigma", "position", _AXES),
+    _Group("velocity_error", "velocity_sigma", "velocity", _AXES),
+    _Group("rate_error", "rate_l_sigma", "rate", _AXES),
+    _Group("inertia_ratio_error", "inertia_ratio_sigma", "k1", ("k1", "k2")),
+)
+_WORDS = {"k1": "inertia ratio"}
+DATASETS = tuple(group.error for group in _GROUPS)
+_SETTLED = 0.1
+"""Part of the time, at the start, that the limits of the axes do not follow."""
+
+
+@styled
+def pose_errors(data: Data, context: str) -> Figure:
+    """Draw the errors (time, component) that there are, with their 3-sigma bands if known."""
+    times = data["time_s"]
+    groups = [group for group in _GROUPS if group.error in data]
+    figure = Figure(figsize=(WIDTH, 1.3 + 1.55 * len(groups)))
+    grid = figure.subplots(len(groups), len(_AXES), squeeze=False, sharey="row")
+    for row, group in zip(grid, groups):
+        _group(list(row), group, data)
+    for column in grid.T:
+        time_axis([axis for axis in column if axis.get_visible()], times)
+    figure.align_ylabels(grid[:, 0])
+    heading(grid[0, 0], "Errors with 3-sigma bands", context)
+    legend_below(figure, _handles(any(group.sigma in data for group in groups)))
+    return figure
+
+
+def _group(row: list[Axes], group: _Group, data: Data) -> None:
+    scale = table_scale(group.quantity)
+    error = scale * data[group.error]
+    sigma = data.get(group.sigma)
+    bound = np.full_like(error, np.nan) if sigma is None else 3 * scale * sigma
+    for index, (axis, label) in enumerate(zip(row, group.labels)):
+        _component(axis, data["time_s"], error[:, index], bound[:, index], index)
+        axis.text(0.97, 0.93, label, transform=axis.transAxes, ha="right", va="top")
+    for axis in row[len(group.labels) :]:
+        axis.set_visible(False)
+    limit = _limit(data["time_s"], error, bound)
+    row[0].set_ylim(-limit, limit)
+    row[0].locator_params(axis="y", nbins=5)
+    shown = unit(group.quantity)
+    name = _WORDS.get(group.quantity, group.quantity)
+    row[0].set_ylabel(name if shown == "1" else f"{name} [{shown}]")
+
+
+def _component(axis: Axes, times: Array, error: Array, bound: Array, index: int) -> None:
+    colour = AXIS_COLOURS[index]
+    if np.isfinite(bound).any():
+        axis.fill_between(times, -bound, bound, color=colour, alpha=0.2, linewidth=0)
+    axis.plot(times, error, color=colour, linewidth=0.9)
+    axis.axhline(0, color=GREY, linewidth=0.5)
+
+
+def _limit(times: Array, error: Array, bound: Array) -> float:
+    """Return what holds all errors, and their bands, once the start is over."""
+    settled = times >= times[0] + _SETTLED * (times[-1] - times[0])
+    seen = np.abs(np.concatenate([error[settled], bound[settled]]))
+    return 1.1 * float(np.max(seen, where=np.isfinite(seen), initial=0.0)) or 1.0
+
+
+def _handles(with_sigma: bool) -> list[Line2D | Patch]:
+    line = Line2D([], [], color=GREY, linewidth=0.9, label="estimate minus truth")
+    band = Patch(facecolor=GREY, alpha=0.3, linewidth=0, label="±3σ")
+    return [line, *([band] if with_sigma else [])]
