@@ -1,25 +1,17 @@
 """What a filter hands back: a `History`, written epoch by epoch."""
 
 from collections.abc import Sequence
-from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.model import Model
+from debrisest.outcome import Outcome
 
 
-class FilterStatus(IntEnum):
+class FilterStatus(Outcome):
     """How a run ended: a code to store, and a sentence to show."""
-
-    sentence: str
-
-    def __new__(cls, code: int, sentence: str) -> "FilterStatus":  # noqa: D102
-        member = int.__new__(cls, code)
-        member._value_ = code
-        member.sentence = sentence
-        return member
 
     FINISHED = 0, "finished"
     DIVERGED = (

@@ -1,24 +1,16 @@
 """What the replay filter hands back: `Estimates`, written epoch by epoch."""
 
 from collections.abc import Sequence
-from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.outcome import Outcome
 
 
-class ReplayStatus(IntEnum):
+class ReplayStatus(Outcome):
     """How a run ended: a code to store, and a sentence to show."""
-
-    sentence: str
-
-    def __new__(cls, code: int, sentence: str) -> "ReplayStatus":  # noqa: D102
-        member = int.__new__(cls, code)
-        member._value_ = code
-        member.sentence = sentence
-        return member
 
     CONVERGED = 0, "converged"
     DIVERGED = (

@@ -13,8 +13,7 @@ from debrisest.attitude import quaternion
 from debrisest.attitude.points import triad, wahba
 from debrisest.clock import Clock
 from debrisest.outcome import sentences
-from debrisest.recovery.basis_pursuit import BasisPursuit as Solution
-from debrisest.recovery.basis_pursuit import RecoveryStatus, basis_pursuit
+from debrisest.recovery.basis_pursuit import Recovered, RecoveryStatus, basis_pursuit
 from debrisest.recovery.fourier import dictionary_length
 from debrisest.recovery.pieces import continuous, pieces
 from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
@@ -38,7 +37,7 @@ class SignSearch(Keys):
     splitting: Positive = Field(0.1, description="as of the recovery, for the hypotheses")
     relaxation: Annotated[float, Field(gt=0, lt=2)] = 1.6
 
-    def scorer(self) -> Callable[[Solution], Array]:
+    def scorer(self) -> Callable[[Recovered], Array]:
         """Return the penalty of a hypothesis, the lower the better."""
         if self.score == "lasso":
             return lasso_score
@@ -117,7 +116,7 @@ class BasisPursuit(RecoveryPart):
             iterations=search.iterations,
         )
 
-    def _solve(self, q: Array) -> Solution:
+    def _solve(self, q: Array) -> Recovered:
         components = np.moveaxis(q, -1, 1)
         return basis_pursuit(
             components,

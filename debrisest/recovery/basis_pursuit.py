@@ -7,22 +7,20 @@ A signal with missing samples is explained by few atoms of the Fourier dictionar
 over the complex coefficients v, where H picks the observed epochs.
 """
 
-from enum import IntEnum
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, ComplexArray, IntArray
+from debrisest.outcome import Outcome
 from debrisest.recovery.fourier import analyse, l1_norm, soft_threshold, synthesise
 
 _ITERATIONS_BETWEEN_CHECKS = 10
 _NUMBERS_IN_CACHE = 50_000
 
 
-class RecoveryStatus(IntEnum):
+class RecoveryStatus(Outcome):
     """How the recovery of a signal ended; `sentence` tells the user."""
-
-    sentence: str
 
     CONVERGED = 0, "converged"
     ITERATION_LIMIT = (
@@ -32,15 +30,8 @@ class RecoveryStatus(IntEnum):
     )
     NO_SAMPLE = 2, "no sample observed: nothing to recover from, the signal is zero"
 
-    def __new__(cls, code: int, sentence: str) -> Self:
-        """Member `code` with its sentence."""
-        member = int.__new__(cls, code)
-        member._value_ = code
-        member.sentence = sentence
-        return member
 
-
-class BasisPursuit(NamedTuple):
+class Recovered(NamedTuple):
     """The solved lasso of every signal of a batch (...)."""
 
     signal: Array
@@ -81,7 +72,7 @@ def basis_pursuit(
     relaxation: float = 1.6,
     tolerance: float = 1e-3,
     start: ComplexArray | None = None,
-) -> BasisPursuit:
+) -> Recovered:
     """Recover signals `samples` (..., time) from their `observed` (..., time) epochs.
 
     `length` is the number n >= time of atoms (see `dictionary_length`), `penalty` the lambda of
@@ -106,7 +97,7 @@ def basis_pursuit(
     v = v.reshape(-1, v.shape[-1])
     done, status = _solve_in_blocks(lasso, v, iterations, relaxation, tolerance)
     signal = synthesise(v, length, samples.shape[-1])
-    return BasisPursuit(
+    return Recovered(
         signal=signal.reshape(*batch, -1),
         coefficients=v.reshape(*batch, -1),
         length=length,

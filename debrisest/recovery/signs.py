@@ -14,22 +14,22 @@ import numpy as np
 from scipy.fft import next_fast_len
 
 from debrisest.arrays import Array, ComplexArray, IntArray
-from debrisest.recovery.basis_pursuit import BasisPursuit, basis_pursuit
+from debrisest.recovery.basis_pursuit import Recovered, basis_pursuit
 from debrisest.recovery.fourier import analyse, l1_norm, multiplicity, synthesise
 
-Score = Callable[[BasisPursuit], Array]
+Score = Callable[[Recovered], Array]
 """Penalty (...) of recovered signals; the hypothesis with the lowest one is believed."""
 
 _DOUBLINGS = 3
 
 
-def lasso_score(solution: BasisPursuit) -> Array:
+def lasso_score(solution: Recovered) -> Array:
     """Penalty (...): the objective of the lasso (Eq. 19), which the recovery minimises."""
     return solution.objective
 
 
 def sparsity_score(
-    solution: BasisPursuit,
+    solution: Recovered,
     count_weight: float = 1.0,
     modulus_weight: float = 10.0,
     threshold: float = 1e-2,

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from debrisest.recovery.basis_pursuit import BasisPursuit
+from debrisest.recovery.basis_pursuit import Recovered
 from debrisest.recovery.pieces import pieces
 from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
 
@@ -129,7 +129,7 @@ def test_sparsity_score_is_eq_28_on_the_full_spectrum():
     """Lines 0, 1, 2 and 3 of six: modulus 5, twice 0.5, twice 0.02, 1."""
     half = np.array([5.0, 0.3 + 0.4j, 0.02j, -1.0])
     zero = np.zeros(())
-    solution = BasisPursuit(np.zeros(6), half, 6, zero, zero.astype(int), zero.astype(int))
+    solution = Recovered(np.zeros(6), half, 6, zero, zero.astype(int), zero.astype(int))
     assert sparsity_score(solution) == pytest.approx(6 + 10 * 7.04)
     score = partial(sparsity_score, count_weight=3.0, modulus_weight=2.0, threshold=0.1)
     assert score(solution) == pytest.approx(3 * 4 + 2 * 7.04)
