@@ -102,10 +102,10 @@ class _Chunk:
     runs: int
     selection: Selection
     held: list[int] = field(default_factory=list)
-    """Runs of the files that were found and are of this scenario."""
+    """Runs of the files of this very scenario that have to be computed anew all the same."""
 
     def steps(self, estimators: Sequence[str]) -> list[Step]:
-        """Return the steps; what is computed anew keeps as many runs as any file held."""
+        """Return the steps; what is computed anew keeps as many runs as its file held."""
         simulate = self._step("simulate", "", ())
         steps = [simulate, *self._estimator_steps(simulate, estimators)]
         most = max(self.runs, *self.held)
@@ -129,7 +129,7 @@ class _Chunk:
         found = store.inspect(path)
         reason, notice = self._why(path, found, key, inputs, upstream)
         held = found.attributes.get("runs", 0) if found.attributes.get("stage_key") == key else 0
-        self.held.append(held)
+        self.held.append(held if reason else 0)
         return Step(
             self.case,
             estimator,
