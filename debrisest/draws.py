@@ -34,6 +34,10 @@ class Draws:
         """Return standard normal draws (run, *shape)."""
         return np.stack([g.standard_normal(shape) for g in self._of(stream)])
 
+    def uniform(self, stream: Stream, shape: tuple[int, ...]) -> Array:
+        """Return draws spread evenly over [0, 1) (run, *shape)."""
+        return np.stack([g.random(shape) for g in self._of(stream)])
+
     def _of(self, stream: Stream) -> list[np.random.Generator]:
         if stream not in self._generators:
             seed, case = self._entropy

@@ -1,16 +1,15 @@
 """What a scenario can name: the base of every part, and what each role must be able to do."""
 
 from abc import ABC, abstractmethod
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from debrisest.arrays import Array, Data
+from debrisest.arrays import Array, Data, IntArray
 from debrisest.clock import Clock
 from debrisest.draws import Draws
-from debrisest.filters.history import History
-from debrisest.filters.model import Model
 
 Window = tuple[float, float]
 """From the first time (included) to the second (excluded), in seconds."""
@@ -83,33 +82,75 @@ class StartPart(Part):
         """Return the initial guess by name, and its variance by name."""
 
 
+class Given(NamedTuple):
+    """What a filter is given beside its model."""
+
+    state: Array
+    """Initial state, (run, n)."""
+    covariance: Array
+    """Of its errors, (run, n_e, n_e)."""
+    measured: Array
+    """(run, time, m), NaN where nothing is."""
+    clock: Clock
+    truth: Array | None = None
+    """True states (run, time, n), for a bound; no estimator looks at them."""
+
+
+class Filtered(NamedTuple):
+    """What every filter hands back, NaN from the epoch of divergence on."""
+
+    state: Array
+    """(run, time, n)."""
+    sigma: Array
+    """1-sigma of each error, (run, time, n_e)."""
+    covariance: Array
+    """(run, kept, n_e, n_e)."""
+    kept: IntArray
+    """Epochs of `covariance`, ascending, the last one always among them."""
+    nis: Array
+    """Normalised innovation squared, (run, time)."""
+    nis_dof: IntArray
+    """Measured components that were used, (run, time)."""
+    status: NDArray[np.str_]
+    """How each run ended, in words, (run,)."""
+    counts: Data = {}
+    """What else the filter counts, by its name in the vocabulary."""
+
+
 class ProblemPart(Part):
-    """An estimation problem: what is estimated, from what, by which model."""
+    """An estimation problem: what is estimated, from what, by which model.
+
+    It gives the kind of model that a filter needs: ``model`` or ``replay_model``.
+    """
 
     @abstractmethod
     def measurements(self, data: Data) -> Array:
         """Return what the filter measures (run, time, component), NaN where nothing is."""
 
     @abstractmethod
-    def model(self, clock: Clock) -> Model:
-        """Return process and measurement as functions of the state."""
+    def model(self, data: Data, clock: Clock) -> Any:
+        """Return process and measurement as functions of the state, as the filters know them."""
 
     @abstractmethod
     def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
         """Return the initial state (run, n) and covariance (run, n, n)."""
 
     @abstractmethod
-    def unpack(self, history: History) -> Data:
+    def unpack(self, filtered: Filtered) -> Data:
         """Return the estimated quantities by name, each with its ``_sigma``."""
 
     @abstractmethod
     def assess(self, data: Data, scored: Window) -> Data:
         """Return the filter's errors, as far as ``data`` holds a truth."""
 
+    def truth(self, data: Data) -> Array | None:
+        """Return the true states (run, time, n), where they are known and a bound is wanted."""
+        return None
+
 
 class FilterPart(Part):
-    """A filter algorithm and its settings."""
+    """A filter algorithm and its settings; it needs the kind of model that a problem gives."""
 
     @abstractmethod
-    def run(self, model: Model, state: Array, covariance: Array, measured: Array) -> History:
-        """Return the history of the estimate over all epochs."""
+    def run(self, model: Any, given: Given) -> Filtered:
+        """Return the estimates of all epochs."""

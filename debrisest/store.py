@@ -20,7 +20,7 @@ import numpy as np
 
 from debrisest.arrays import Data
 from debrisest.files import replacing
-from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, has_runs
+from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, has_runs
 
 FORMAT = "debrisest checkpoint"
 SCHEMA_VERSION = 2
@@ -131,15 +131,13 @@ def _write_data(file: Any, data: Data) -> None:
     scales: dict[str, Any] = {}
     for name in sorted(data, key=lambda name: name not in COORDINATES):
         quantity, value = VOCABULARY[name], data[name]
-        if value.ndim != len(quantity.axes):
-            raise ValueError(f"{name} has {value.ndim} axes, the vocabulary says {quantity.axes}")
         dataset = _create(file, name, value)
         dataset.attrs.update({"units": quantity.unit, "long_name": quantity.long_name})
         if name in COORDINATES:
             dataset.make_scale(name)
             scales[name] = dataset
             continue
-        for axis, (label, length) in enumerate(zip(quantity.axes, value.shape)):
+        for axis, (label, length) in enumerate(zip(axes_of(name, value.ndim), value.shape)):
             if AXIS_LENGTH.get(label, length) != length:
                 raise ValueError(f"{name} has {length} values along {label}")
             if label not in scales:

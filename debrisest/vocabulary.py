@@ -22,11 +22,15 @@ class Quantity(NamedTuple):
 COORDINATES = ("run", "time_s", "feature", "covariance_time_s", "error_name")
 """Axes that have a coordinate of the same name; every other axis is a plain index."""
 
-AXIS_LENGTH = {"quaternion": 4, "axis": 3, "row": 3, "column": 3}
+AXIS_LENGTH = {"quaternion": 4, "axis": 3, "row": 3, "column": 3, "ratio": 2, "image_axis": 2}
 
 _TIME = ("run", "time_s")
 _TIME_VECTOR = (*_TIME, "axis")
 _TIME_QUATERNION = (*_TIME, "quaternion")
+_TIME_RATIO = (*_TIME, "ratio")
+_TIME_IMAGE = (*_TIME, "camera", "feature", "image_axis")
+_POINT = ("run", "feature", "axis")
+_RUN_VECTOR = ("run", "axis")
 _RUN = ("run",)
 
 VOCABULARY: dict[str, Quantity] = {
@@ -41,8 +45,10 @@ VOCABULARY: dict[str, Quantity] = {
     "recover_status": Quantity(_RUN, "", "status of the recovery, as later stages read it"),
     "filter_status": Quantity(_RUN, "", "status of the filter, as later stages read it"),
     # simulate
-    "orbit_position": Quantity(_TIME_VECTOR, "m", "target's position, Earth-centred inertial"),
-    "orbit_velocity": Quantity(_TIME_VECTOR, "m/s", "target's velocity, Earth-centred inertial"),
+    "orbit_position": Quantity(_TIME_VECTOR, "m", "position on the orbit, Earth-centred inertial"),
+    "orbit_velocity": Quantity(
+        _TIME_VECTOR, "m/s", "velocity on the orbit, Earth-centred inertial"
+    ),
     "true_q_ib": Quantity(_TIME_QUATERNION, "1", "attitude of the body, body to inertial axes"),
     "true_rate_b": Quantity(_TIME_VECTOR, "rad/s", "angular rate of the body in body axes"),
     "true_inertia_b": Quantity(("run", "row", "column"), "kg m2", "inertia tensor in body axes"),
@@ -53,6 +59,30 @@ VOCABULARY: dict[str, Quantity] = {
     ),
     "true_position": Quantity(_TIME_VECTOR, "m", "target relative to the chaser"),
     "true_velocity": Quantity(_TIME_VECTOR, "m/s", "target's velocity relative to the chaser"),
+    "true_q_lt": Quantity(_TIME_QUATERNION, "1", "attitude, target to leader's orbital frame"),
+    "true_rate_l": Quantity(_TIME_VECTOR, "rad/s", "rate relative to leader's frame, in its axes"),
+    "true_inertia_ratio": Quantity(("run", "ratio"), "1", "ln(Ix/Iy) and ln(Iy/Iz)"),
+    "baseline": Quantity(_RUN, "m", "distance between the cameras"),
+    "measured_pixel": Quantity(_TIME_IMAGE, "1", "slopes of features, focal length 1"),
+    "pixel_noise": Quantity(_RUN, "1", "1-sigma noise of slopes"),
+    "measured_flow": Quantity(_TIME_IMAGE, "1/s", "time derivative of slopes"),
+    "flow_noise": Quantity(_RUN, "1/s", "1-sigma noise of the flow"),
+    "measured_disparity": Quantity((*_TIME, "feature"), "1", "difference between both cameras"),
+    "disparity_noise": Quantity(_RUN, "1", "1-sigma noise of the disparity"),
+    "measured_angular_acceleration": Quantity(_TIME_VECTOR, "rad/s2", "in principal axes"),
+    "angular_acceleration_noise": Quantity(_RUN, "rad/s2", "1-sigma noise per axis"),
+    "start_position": Quantity(_RUN_VECTOR, "m", "first guess of the position"),
+    "start_position_sigma": Quantity(_RUN_VECTOR, "m", "its 1-sigma"),
+    "start_velocity": Quantity(_RUN_VECTOR, "m/s", "first guess of the velocity"),
+    "start_velocity_sigma": Quantity(_RUN_VECTOR, "m/s", "its 1-sigma"),
+    "start_rate_l": Quantity(_RUN_VECTOR, "rad/s", "first guess of the rate"),
+    "start_rate_l_sigma": Quantity(_RUN_VECTOR, "rad/s", "its 1-sigma"),
+    "start_q_lt": Quantity(("run", "quaternion"), "1", "first guess of the attitude"),
+    "start_q_lt_sigma": Quantity(("run", "quaternion"), "1", "1-sigma before it was normalised"),
+    "start_inertia_ratio": Quantity(("run", "ratio"), "1", "first guess of the inertia ratios"),
+    "start_inertia_ratio_sigma": Quantity(("run", "ratio"), "1", "its 1-sigma"),
+    "start_point_b": Quantity(_POINT, "m", "first guess of the features in body axes"),
+    "start_point_b_sigma": Quantity(_POINT, "m", "its 1-sigma"),
     "measured_point": Quantity((*_TIME, "feature", "axis"), "m", "feature relative to the chaser"),
     # recover
     "raw_q_if": Quantity(_TIME_QUATERNION, "1", "attitude from the points of one epoch"),
@@ -70,6 +100,22 @@ VOCABULARY: dict[str, Quantity] = {
     "rate_b_sigma": Quantity(_TIME_VECTOR, "rad/s", "1-sigma of rate_b"),
     "moments_b": Quantity(_TIME_VECTOR, "1", "principal moments of inertia, unit norm"),
     "moments_b_sigma": Quantity(_TIME_VECTOR, "1", "1-sigma of moments_b"),
+    "position": Quantity(
+        _TIME_VECTOR, "m", "target relative to the chaser; assess: norm of the error", "m"
+    ),
+    "position_sigma": Quantity(_TIME_VECTOR, "m", "1-sigma of position"),
+    "velocity": Quantity(
+        _TIME_VECTOR, "m/s", "target's relative velocity; assess: norm of the error", "m/s"
+    ),
+    "velocity_sigma": Quantity(_TIME_VECTOR, "m/s", "1-sigma of velocity"),
+    "q_lt": Quantity(_TIME_QUATERNION, "1", "estimated attitude, target to leader's frame"),
+    "q_lt_sigma": Quantity(_TIME_QUATERNION, "1", "1-sigma of q_lt"),
+    "rate_l": Quantity(_TIME_VECTOR, "rad/s", "estimated rate relative to the leader's frame"),
+    "rate_l_sigma": Quantity(_TIME_VECTOR, "rad/s", "1-sigma of rate_l"),
+    "inertia_ratio": Quantity(_TIME_RATIO, "1", "estimated ln(Ix/Iy) and ln(Iy/Iz)"),
+    "inertia_ratio_sigma": Quantity(_TIME_RATIO, "1", "1-sigma of inertia_ratio"),
+    "point_b": Quantity((*_TIME, "feature", "axis"), "m", "estimated features in body axes"),
+    "point_b_sigma": Quantity((*_TIME, "feature", "axis"), "m", "1-sigma of point_b"),
     "covariance": Quantity(
         ("run", "covariance_time_s", "error_name", "error_column"), "", "covariance of the state"
     ),
@@ -78,6 +124,7 @@ VOCABULARY: dict[str, Quantity] = {
     "rejected": Quantity(_TIME, "1", "components that the gate rejected at the epoch"),
     "reopened": Quantity(_RUN, "1", "times that the gate was reopened", "1"),
     "updates": Quantity(_TIME, "1", "iterations of the update at the epoch"),
+    "converged": Quantity(_RUN, "1", "the last replay converged", "1"),
     "repairs": Quantity(_RUN, "1", "covariance repairs", "1"),
     # assess
     "relabeling": Quantity(("run", "row", "column"), "1", "estimated to true principal axes"),
@@ -97,6 +144,14 @@ VOCABULARY: dict[str, Quantity] = {
     "inertia_1": Quantity(_TIME, "1", "error of principal moment 1 (unit norm)", "1"),
     "inertia_2": Quantity(_TIME, "1", "error of principal moment 2 (unit norm)", "1"),
     "inertia_3": Quantity(_TIME, "1", "error of principal moment 3 (unit norm)", "1"),
+    "position_error": Quantity(_TIME_VECTOR, "m", "error of the position"),
+    "velocity_error": Quantity(_TIME_VECTOR, "m/s", "error of the velocity"),
+    "rate_error": Quantity(_TIME_VECTOR, "rad/s", "error of the rate"),
+    "inertia_ratio_error": Quantity(_TIME_RATIO, "1", "error of the inertia ratios"),
+    "k1": Quantity(_TIME, "1", "error of ln(Ix/Iy), absolute", "1"),
+    "k2": Quantity(_TIME, "1", "error of ln(Iy/Iz), absolute", "1"),
+    "nees": Quantity(_TIME, "1", "normalised error squared per dimension", "1"),
+    "nees_dof": Quantity(_TIME, "1", "errors that it counts, where the covariance was kept"),
     "convergence_time": Quantity(_RUN, "s", "rate error below its limit for good", "s"),
 }
 
@@ -106,6 +161,16 @@ _TABLE_SCALE = {("rad", "deg"): 180 / np.pi, ("rad/s", "deg/s"): 180 / np.pi, ("
 def has_runs(name: str) -> bool:
     """Return whether a dataset's first axis is the run."""
     return VOCABULARY[name].axes[0] == "run"
+
+
+def axes_of(name: str, dimensions: int) -> tuple[str, ...]:
+    """Return the axes of a dataset; an error named like an estimated vector is its norm."""
+    quantity = VOCABULARY[name]
+    is_norm = quantity.table_unit and dimensions == len(quantity.axes) - 1
+    axes = quantity.axes[:-1] if is_norm else quantity.axes
+    if len(axes) != dimensions:
+        raise ValueError(f"{name} has {dimensions} axes, the vocabulary says {quantity.axes}")
+    return axes
 
 
 def table_scale(name: str) -> float:

@@ -78,7 +78,7 @@ def tumbling(runs: int, epochs: int) -> tuple[Model, Array, Array, Array]:
     measured = quaternion.normalize(q + noise)
     state = np.concatenate([q[0], [1, 0, 0, 0], RATE, np.full(3, 1 / np.sqrt(3))])
     return (
-        problem.model(Clock(float(epochs), 1.0)),
+        problem.model({}, Clock(float(epochs), 1.0)),
         np.tile(state, (runs, 1)),
         np.tile(START.diagonal(), (runs, 1, 1)),
         measured,

@@ -8,7 +8,7 @@ and rate, which is the straight line of least squares through the angles.
 from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -17,10 +17,12 @@ import pytest
 from debrisest import store
 from debrisest.catalog import CATALOG
 from debrisest.draws import Stream
-from debrisest.filters.history import History, HistoryWriter
+from debrisest.filters.history import HistoryWriter
 from debrisest.filters.model import Model
 from debrisest.roles import (
+    Filtered,
     FilterPart,
+    Given,
     Positive,
     ProblemPart,
     RecoveryPart,
@@ -98,6 +100,7 @@ class Wide(StartPart):
 
 class ConstantSpin(ProblemPart):
     needs = ("q_if",)
+    gives = ("model",)
     kind: Literal["constant_spin"]
     angle_noise_deg: Positive
 
@@ -105,7 +108,7 @@ class ConstantSpin(ProblemPart):
         q = data["q_if"]
         return np.unwrap(2 * np.arctan2(q[..., 3], q[..., 0]), axis=-1)[..., None]
 
-    def model(self, clock):
+    def model(self, data, clock):
         step = np.array([[1.0, clock.step], [0.0, 1.0]])
         return Model(
             process=lambda state, _: state @ step.T,
@@ -119,8 +122,8 @@ class ConstantSpin(ProblemPart):
         state = guess["rate_b"]
         return state, np.tile(variance["rate"] * np.eye(2), (len(state), 1, 1))
 
-    def unpack(self, history):
-        return {"rate_b": about_z(history.state), "rate_b_sigma": about_z(history.sigma)}
+    def unpack(self, filtered):
+        return {"rate_b": about_z(filtered.state), "rate_b_sigma": about_z(filtered.sigma)}
 
     def assess(self, data, scored):
         result = {"nis": data["nis"] / np.maximum(data["nis_dof"], 1)}
@@ -134,9 +137,11 @@ def about_z(values):
 
 
 class Kalman(FilterPart):
+    needs = ("model",)
     kind: Literal["kalman"]
 
-    def run(self, model: Model, state: Any, covariance: Any, measured: Any) -> History:
+    def run(self, model: Model, given: Given) -> Filtered:
+        state, covariance, measured = given.state, given.covariance, given.measured
         f, h = model.process(np.eye(2), 0).T, model.measurement(np.eye(2), 0).T
         writer = HistoryWriter(model, state, covariance, measured.shape[1])
         none = np.zeros(len(state), dtype=np.int64)
@@ -154,7 +159,11 @@ class Kalman(FilterPart):
             )
             nis = innovation[:, 0] ** 2 / size[:, 0, 0]
             writer.record(k, state, covariance, nis, none + 1, none)
-        return writer.history()
+        found = writer.history()
+        return Filtered(
+            *(found.state, found.sigma, found.covariance, found.kept, found.nis, found.nis_dof),
+            status=np.array(["finished"] * len(state)),
+        )
 
 
 ADDED = {
@@ -238,7 +247,8 @@ def test_two_problems_in_one_catalog(
     assert result.exit_code == 0
     small.write_text(small.read_text().replace("kind: unscented", "kind: kalmann"))
     result = cli("validate", small)
-    assert "'kalmann'; allowed: unscented, kalman (did you mean kalman?)" in result.stderr
+    assert "'kalmann'; allowed: unscented, " in result.stderr
+    assert ", kalman (did you mean kalman?)" in result.stderr
 
 
 def test_the_parts_of_different_problems_are_told_apart(

@@ -6,6 +6,7 @@ through the same statistics, and a ratio to it has little sampling noise. Withou
 motion follows from the state at epoch 0, so that the information is gathered there.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,8 @@ from debrisest.arrays import Array
 from debrisest.filters.replay_model import ReplayModel
 
 _BLOCK = 10  # runs at a time, for the sake of memory
+_OUTLIER = 7.0
+"""A measurement so many sigmas off is an outlier: Gaussian noise would be once in 10^11 times."""
 
 
 class PairedErrors(NamedTuple):
@@ -22,8 +25,11 @@ class PairedErrors(NamedTuple):
     filter_error: Array
     """(run, time, n_e)."""
     filter_sigma: Array
+    filter_covariance: Array
+    """(run, kept, n_e, n_e)."""
     smoother_error: Array
     smoother_sigma: Array
+    smoother_covariance: Array
 
 
 class Bound(NamedTuple):
@@ -73,13 +79,18 @@ def efficient(
 
 
 def paired_errors(
-    model: ReplayModel, truth: Array, prior: Array, covariance: Array, measured: Array
+    model: ReplayModel,
+    truth: Array,
+    prior: Array,
+    covariance: Array,
+    measured: Array,
+    keep: Sequence[int] = (),
 ) -> PairedErrors:
     """Return the plain errors of the efficient estimators for the runs of an experiment.
 
     ``truth (run, n)`` and ``prior (run, n)`` are states of epoch 0, ``covariance (n_e, n_e)`` the
-    prior's, ``measured (run, time, m)``. Without outliers, of course: the bound is for the noise
-    of the model.
+    prior's, ``measured (run, time, m)``; ``keep`` lists the epochs whose covariance is wanted.
+    Outliers, which the efficient estimator tells from the noise of the model, count as missing.
     """
     last, blocks = measured.shape[1] - 1, []
     for begin in range(0, len(truth), _BLOCK):
@@ -90,13 +101,22 @@ def paired_errors(
         bound = efficient(
             np.stack(transition, axis=1),
             derivative,
-            measured[runs] - shown,
+            _without_outliers(measured[runs] - shown, model.sigma),
             model.sigma,
             model.plain_difference(prior[runs], truth[runs]),
             covariance,
         )
-        blocks.append((bound[0], _sigma(bound[1]), bound[2], _sigma(bound[3])))
+        blocks.append(
+            [
+                *(bound[0], _sigma(bound[1]), bound[1][:, list(keep)]),
+                *(bound[2], _sigma(bound[3]), bound[3][:, list(keep)]),
+            ]
+        )
     return PairedErrors(*(np.concatenate(parts) for parts in zip(*blocks)))
+
+
+def _without_outliers(noise: Array, sigma: Array) -> Array:
+    return np.where(np.abs(noise) > _OUTLIER * sigma, np.nan, noise)
 
 
 def _sigma(covariance: Array) -> Array:

@@ -50,6 +50,21 @@ def _stack(x: Array, y: Array, z: Array) -> Array:
     return np.stack(np.broadcast_arrays(x, y, z), axis=-1)
 
 
+def shape_and_anomaly(
+    position: Array, velocity: Array, mu: float = MU_EARTH
+) -> tuple[float, float, float]:
+    """Semi-major axis, m, eccentricity and true anomaly, rad, of an elliptic orbit's state (3,).
+
+    On a circle, where the anomaly is counted from no point in particular, it is any number.
+    """
+    radius = float(np.linalg.norm(position))
+    momentum = float(np.linalg.norm(np.cross(position, velocity)))
+    axis = 1.0 / (2.0 / radius - float(velocity @ velocity) / mu)
+    e_cos = momentum**2 / (mu * radius) - 1.0
+    e_sin = momentum * float(position @ velocity) / (mu * radius)
+    return axis, float(np.hypot(e_cos, e_sin)), float(np.arctan2(e_sin, e_cos))
+
+
 def propagate(
     position: Array, velocity: Array, times: Array, mu: float = MU_EARTH
 ) -> tuple[Array, Array]:

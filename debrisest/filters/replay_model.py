@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from debrisest.arrays import Array, IntArray
+from debrisest.filters.model import add
 
 
 class ReplayModel(NamedTuple):
@@ -43,3 +44,5 @@ class ReplayModel(NamedTuple):
     """Noise of the measurements, (m,); they are independent."""
     error_names: tuple[str, ...]
     """Of the plain errors."""
+    displace: Callable[[Array, Array], Array] = add
+    """Exact inverse of `difference`, physical or not, with which a bound's errors make states."""

@@ -12,6 +12,20 @@ from debrisest.problems.tumbling_attitude import Variances
 from debrisest.roles import StartPart
 
 
+class Drawn(StartPart):
+    """What a sensor knows of the target at time zero, with the sigma of every quantity."""
+
+    needs = ("start_position",)
+    kind: Literal["drawn"]
+
+    def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:
+        """Return the initial guess by name, and its variance by name."""
+        sigmas = [name for name in data if name.startswith("start_") and name.endswith("_sigma")]
+        names = [name.removeprefix("start_").removesuffix("_sigma") for name in sigmas]
+        guess: Data = {name: data[f"start_{name}"] for name in names}
+        return guess, {name: float(data[f"start_{name}_sigma"].flat[0]) ** 2 for name in names}
+
+
 class FirstSamples(StartPart):
     """Rate from the first differences of the measured attitude, equal moments, no offset.
 

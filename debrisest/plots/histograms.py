@@ -9,13 +9,14 @@ from matplotlib.ticker import MaxNLocator
 
 from debrisest.arrays import Array, Data
 from debrisest.plots.axes import heading, legend_below, unit
+from debrisest.plots.grid import COLUMNS, headed_grid
 from debrisest.plots.style import BLUE, VERMILION, WIDTH, styled
 from debrisest.vocabulary import table_scale
 
 QUANTITIES = ("position", "velocity", "rate", "attitude", "k1", "k2")
 SETTLED = 0.1
 """Part of the time that is left out at the start."""
-_BINS, _COLUMNS = 24, 3
+_BINS = 24
 _FARTHEST = 4.0
 """A bin axis ends at so many times the 90th percentile; runs beyond it are counted in words."""
 
@@ -24,16 +25,16 @@ _FARTHEST = 4.0
 def histograms(data: Data, context: str) -> Figure:
     """Draw, for every quantity (run, time) there is, a histogram of the runs' mean |error|."""
     shown = [name for name in QUANTITIES if name in data]
-    rows = -(-len(shown) // _COLUMNS)
+    rows = -(-len(shown) // COLUMNS)
     figure = Figure(figsize=(WIDTH, 1.4 + 1.9 * rows))
-    grid = figure.subplots(rows, _COLUMNS, squeeze=False)
+    top, grid = headed_grid(figure, rows)
     for axis, name in zip(grid.flat, shown):
         _quantity(axis, name, run_means(data["time_s"], data[name]) * table_scale(name))
     for axis in grid.flat[len(shown) :]:
         axis.set_visible(False)
     for axis in grid[:, 0]:
         axis.set_ylabel("runs")
-    heading(grid[0, 0], "Mean errors of the runs", f"{context}; {_window(data['time_s'])}")
+    heading(top, "Mean errors of the runs", f"{context}; {_window(data['time_s'])}")
     legend_below(figure, _handles())
     return figure
 
@@ -53,7 +54,8 @@ def _quantity(axis: Axes, name: str, means: Array) -> None:
     known = means[np.isfinite(means)]
     axis.set_xlabel(f"{name} error" + (f" [{unit(name)}]" if unit(name) != "1" else ""))
     axis.yaxis.set_major_locator(MaxNLocator(5, integer=True))
-    axis.locator_params(axis="x", nbins=5)
+    axis.xaxis.set_major_locator(MaxNLocator(3, steps=[1, 2, 2.5, 5, 10]))
+    axis.xaxis.set_major_formatter("{x:g}")
     limit = _limit(known)
     axis.set_xlim(0, limit)
     if not len(known):

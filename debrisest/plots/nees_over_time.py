@@ -3,11 +3,13 @@
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import LogLocator
 
-from debrisest.arrays import Array, Data
+from debrisest.arrays import Array, BoolArray, Data
 from debrisest.assessment.consistency import interval
 from debrisest.plots.axes import heading, legend_below, time_axis
 from debrisest.plots.style import BLUE, GREY, INK, VERMILION, WIDTH, styled
@@ -26,11 +28,10 @@ def nees_over_time(data: Data, context: str) -> Figure:
     """
     times, nees = data["time_s"], data["nees"]
     known = np.isfinite(nees)
-    shown = known.any(axis=0)
+    shown: BoolArray = np.asarray(known.any(axis=0))
     figure = Figure(figsize=(WIDTH, 3.6))
     axis = figure.subplots()
-    axis.set_yscale("log")
-    axis.yaxis.set_major_formatter("{x:g}")
+    _log_axis(axis)
     mean, median = _over_runs(nees[:, shown], known[:, shown])
     low, high = _interval(data, known, shown)
     axis.fill_between(times[shown], low, high, color=GREY, alpha=0.25, linewidth=0)
@@ -46,14 +47,22 @@ def nees_over_time(data: Data, context: str) -> Figure:
     return figure
 
 
-def _over_runs(nees: Array, known: Array) -> tuple[Array, Array]:
+def _log_axis(axis: Axes) -> None:
+    """Make the axis logarithmic, with labels at 1, 2 and 5 of every decade."""
+    axis.set_yscale("log")
+    axis.yaxis.set_minor_locator(LogLocator(subs=(2, 5)))
+    axis.yaxis.set_major_formatter("{x:g}")
+    axis.yaxis.set_minor_formatter("{x:g}")
+
+
+def _over_runs(nees: Array, known: BoolArray) -> tuple[Array, Array]:
     """Mean and median (epoch,) of what is known; NaN where a log axis can show nothing."""
     mean = np.sum(nees, axis=0, where=known) / known.sum(axis=0)
     median = np.nanmedian(np.where(known, nees, np.nan), axis=0) if nees.size else mean
     return np.where(mean > 0, mean, np.nan), np.where(median > 0, median, np.nan)
 
 
-def _interval(data: Data, known: Array, shown: Array) -> tuple[Array, Array]:
+def _interval(data: Data, known: BoolArray, shown: BoolArray) -> tuple[Array, Array]:
     """Return the interval (epoch,) of the mean over the runs; NaN if no dimension is known."""
     if "nees_dof" not in data:
         nothing = np.full(int(shown.sum()), np.nan)

@@ -10,6 +10,7 @@ from matplotlib.patches import Patch
 
 from debrisest.arrays import Array, Data
 from debrisest.plots.axes import heading, legend_below, time_axis, unit
+from debrisest.plots.grid import headed_grid
 from debrisest.plots.style import AXIS_COLOURS, GREY, WIDTH, styled
 from debrisest.vocabulary import table_scale
 
@@ -42,13 +43,13 @@ def pose_errors(data: Data, context: str) -> Figure:
     times = data["time_s"]
     groups = [group for group in _GROUPS if group.error in data]
     figure = Figure(figsize=(WIDTH, 1.3 + 1.55 * len(groups)))
-    grid = figure.subplots(len(groups), len(_AXES), squeeze=False, sharey="row")
+    top, grid = headed_grid(figure, len(groups), sharey="row")
     for row, group in zip(grid, groups):
         _group(list(row), group, data)
     for column in grid.T:
-        time_axis([axis for axis in column if axis.get_visible()], times)
+        time_axis(list(column), times)
     figure.align_ylabels(grid[:, 0])
-    heading(grid[0, 0], "Errors with 3-sigma bands", context)
+    heading(top, "Errors with 3-sigma bands", context)
     legend_below(figure, _handles(any(group.sigma in data for group in groups)))
     return figure
 

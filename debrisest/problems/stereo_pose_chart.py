@@ -64,6 +64,13 @@ def plain(state: Array, points: int) -> Array:
 
 def retract(state: Array, error: Array, points: int) -> Array:
     """State ``(..., n)`` moved by a robocentric error ``(..., n_e)``, its ratios kept physical."""
+    result = displace(state, error, points)
+    result[..., K] = inertia_ratios.move(state[..., K], error[..., K_ERROR])
+    return result
+
+
+def displace(state: Array, error: Array, points: int) -> Array:
+    """State ``(..., n)`` moved by a robocentric error ``(..., n_e)``; inverse of `difference`."""
     position = state[..., POSITION] + error[..., POSITION]
     rate = state[..., RATE] + error[..., RATE]
     cloud, centre_velocity = _cloud(state, points)
@@ -72,7 +79,7 @@ def retract(state: Array, error: Array, points: int) -> Array:
     arms = cloud - position[..., None, :]
     velocity = centre_velocity + error[..., VELOCITY] - cross(rate, arms.mean(-2))
     body = arms @ quaternion.to_matrix(q)
-    k = inertia_ratios.move(state[..., K], error[..., K_ERROR])
+    k = state[..., K] + error[..., K_ERROR]
     return np.concatenate([position, velocity, rate, q, k, body.reshape(*k.shape[:-1], -1)], -1)
 
 

@@ -53,6 +53,7 @@ def replay_model(known: Setup, sigma: Array, prior_sigma: Array) -> ReplayModel:
         ),
         sigma=sigma,
         error_names=error_names("attitude_x attitude_y attitude_z", points),
+        displace=lambda state, error: chart.displace(state, error, points),
     )
 
 

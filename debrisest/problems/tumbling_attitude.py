@@ -23,9 +23,8 @@ from debrisest.assessment.statistics import per_dimension, window_mask
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.dynamics.inertia import principal_axes
-from debrisest.filters.history import History
 from debrisest.filters.model import Model
-from debrisest.roles import Keys, Positive, ProblemPart, Window
+from debrisest.roles import Filtered, Keys, Positive, ProblemPart, Window
 
 Q_IB, Q_BF, RATE, MOMENTS = slice(0, 4), slice(4, 8), slice(8, 11), slice(11, 14)
 ERROR_NAMES = tuple(
@@ -129,6 +128,7 @@ class TumblingAttitude(ProblemPart):
     """The problem of this file, with its integrator and its noises (variances)."""
 
     needs = ("q_if",)
+    gives = ("model",)
     kind: Literal["tumbling_attitude"]
     integrator: Literal["euler", "rk4"]
     process_noise: Variances
@@ -138,7 +138,7 @@ class TumblingAttitude(ProblemPart):
         """Return the recovered attitude (run, time, 4)."""
         return data["q_if"]
 
-    def model(self, clock: Clock) -> Model:
+    def model(self, data: Data, clock: Clock) -> Model:
         """Return process and measurement of one clock step."""
         integrator = _INTEGRATORS[self.integrator]
         return Model(
@@ -159,11 +159,11 @@ class TumblingAttitude(ProblemPart):
         covariance = Variances(**variance).diagonal()
         return state, np.broadcast_to(covariance, (len(state), *covariance.shape)).copy()
 
-    def unpack(self, history: History) -> Data:
+    def unpack(self, filtered: Filtered) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
         blocks = {"q_ib": Q_IB, "q_bf": Q_BF, "rate_b": RATE, "moments_b": MOMENTS}
-        return {name: history.state[..., block] for name, block in blocks.items()} | {
-            f"{name}_sigma": history.sigma[..., block] for name, block in blocks.items()
+        return {name: filtered.state[..., block] for name, block in blocks.items()} | {
+            f"{name}_sigma": filtered.sigma[..., block] for name, block in blocks.items()
         }
 
     def assess(self, data: Data, scored: Window) -> Data:

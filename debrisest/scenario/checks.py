@@ -47,7 +47,7 @@ def _parts_that_lack_data(scenario: Scenario) -> Found:
         yield from _lacks(tuple(name.split(".", 1)), part, given)
     for name, estimator in scenario.estimators.items():
         here = set(given)
-        for role in ("recovery", "start", "problem"):
+        for role in ("recovery", "start", "problem", "filter"):
             part = getattr(estimator, role)
             if part is not None:
                 yield from _lacks(("estimators", name, role), part, here)
@@ -85,7 +85,7 @@ def _windows(scenario: Scenario) -> Found:
     ]
     if tables.scored_window is not None:
         named.append((("tables", "scored_window"), tables.scored_window))
-        if tables.scored_window in ("start", "end"):
+        if len(set(window_of(tables.scored_window, duration))) == 1:
             yield ("tables", "scored_window"), "a span such as 900-1400 s is needed here"
     for path, window in named:
         if window_of(window, duration)[1] > duration:

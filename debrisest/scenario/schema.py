@@ -23,18 +23,25 @@ from debrisest.roles import (
 )
 from debrisest.vocabulary import VOCABULARY
 
-_WINDOW = re.compile(r"^(\d+(?:\.\d+)?)-(\d+(?:\.\d+)?) s$")
+_NUMBER = r"(\d+(?:\.\d+)?)"
+_WINDOW = re.compile(f"^{_NUMBER}-{_NUMBER} s$")
+_INSTANT = re.compile(f"^{_NUMBER} s$")
 
 
 def window_of(text: str, duration: float) -> Window:
-    """Return the time span that ``start``, ``end`` or ``a-b s`` names."""
+    """Return the time span that ``start``, ``end``, ``a s`` or ``a-b s`` names."""
     if text == "start":
         return (0.0, 0.0)
     if text == "end":
         return (duration, duration)
+    if instant := _INSTANT.match(text):
+        return (float(instant[1]), float(instant[1]))
     match = _WINDOW.match(text)
     if match is None or float(match[1]) >= float(match[2]):
-        raise ValueError(f"a window is 'start', 'end' or a span such as '900-1400 s', not {text!r}")
+        raise ValueError(
+            "a window is 'start', 'end', an instant such as '50 s' or a span such as "
+            f"'900-1400 s', not {text!r}"
+        )
     return (float(match[1]), float(match[2]))
 
 
@@ -62,11 +69,12 @@ StatisticName = Annotated[str, AfterValidator(_known_statistic)]
 
 
 class Divergence(Keys):
-    """A run has diverged if the RMS of a quantity over a window is above a limit."""
+    """A run has diverged if a quantity over a window, by default its RMS, is above a limit."""
 
     quantity: QuantityName
     above: Positive = Field(description="in the unit of the tables")
     window: WindowText
+    statistic: StatisticName = Field("rms", description="as it is over the window of one run")
 
 
 class Table(Keys):

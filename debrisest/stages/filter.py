@@ -5,8 +5,7 @@ from typing import Any
 import numpy as np
 
 from debrisest.arrays import Data
-from debrisest.filters.history import FilterStatus
-from debrisest.outcome import sentences
+from debrisest.roles import Given
 from debrisest.scenario.load import Case
 
 VERSION = 1
@@ -27,15 +26,18 @@ def run(case: Case, estimator: str, data: Data) -> Data:
     chosen, clock = case.scenario.estimators[estimator], case.scenario.clock
     problem, start, algorithm = chosen.problem, chosen.start, chosen.filter
     assert problem is not None and start is not None and algorithm is not None
-    model = problem.model(clock)
+    model = problem.model(data, clock)
     state, covariance = problem.pack(*start.start(data, clock))
-    history = algorithm.run(model, state, covariance, problem.measurements(data))
-    return problem.unpack(history) | {
-        "covariance_time_s": data["time_s"][history.kept],
+    measured = problem.measurements(data)
+    given = Given(state, covariance, measured, clock, problem.truth(data))
+    filtered = algorithm.run(model, given)
+    return {
+        **problem.unpack(filtered),
+        "covariance_time_s": data["time_s"][filtered.kept],
         "error_name": np.array(model.error_names),
-        "covariance": history.covariance,
-        "nis": history.nis,
-        "nis_dof": history.nis_dof,
-        "repairs": history.repairs,
-        "status": sentences(history.status, FilterStatus),
+        "covariance": filtered.covariance,
+        "nis": filtered.nis,
+        "nis_dof": filtered.nis_dof,
+        "status": filtered.status,
+        **filtered.counts,
     }

@@ -22,6 +22,10 @@ COLUMNS = [
     *("runs", "failed", "diverged", "verdict"),
 ]
 
+BOUND = "bound"
+_BOUNDS = dict.fromkeys(("smoother", "smoother_bound"), "smoother_bound")
+"""Estimators whose bound is another one than that of all the others."""
+
 Results = Mapping[tuple[str, str], Result]
 
 
@@ -88,10 +92,29 @@ def _row(
     results: Results,
     published: Published | None,
 ) -> dict[str, object] | None:
-    tables = scenario.common.tables
-    members = tables.means.get(key.case, [key.case])
-    parts = [results.get((case, estimator)) for case in members]
-    dataset = _dataset(table, key.quantity)
+    found = _measured(key, estimator, table, scenario, results)
+    if found is None:
+        return None
+    bound = _measured(key, _BOUNDS.get(estimator, BOUND), table, scenario, results)
+    value, factor = (published.value, published.factor) if published else (None, 1.0)
+    lost = (found["diverged"] + found["failed"]) / found["runs"]
+    return {
+        **key._asdict(),
+        "estimator": estimator,
+        "unit": VOCABULARY[_dataset(table, key.quantity)].table_unit,
+        "published": value,
+        **found,
+        "bound": bound["measured"] if bound else np.nan,
+        "verdict": str(verdict(found["measured"], value, factor, lost)),
+    }
+
+
+def _measured(
+    key: CellKey, estimator: str, table: Table, scenario: LoadedScenario, results: Results
+) -> dict[str, Any] | None:
+    """Return the figure of a cell with its interval and its runs, or None if it is not there."""
+    tables, dataset = scenario.common.tables, _dataset(table, key.quantity)
+    parts = [results.get((case, estimator)) for case in tables.means.get(key.case, [key.case])]
     present = [part for part in parts if part is not None and part.shows(dataset)]
     if not present or len(present) < len(parts):
         return None
@@ -99,23 +122,13 @@ def _row(
     kept = [figures[keep] for figures, keep, _ in groups]
     seed = zlib.crc32("|".join((*key, estimator)).encode())
     measured, low, high = (_rounded(x) for x in bootstrap(key.statistic, kept, seed))
-    runs = sum(part.runs for part in present)
-    failed = sum(len(part.failures) for part in present)
-    diverged = sum(int(lost.sum()) for *_, lost in groups)
-    value, factor = (published.value, published.factor) if published else (None, 1.0)
     return {
-        **key._asdict(),
-        "estimator": estimator,
-        "unit": VOCABULARY[dataset].table_unit,
-        "published": value,
         "measured": measured,
         "ci_low": low,
         "ci_high": high,
-        "bound": np.nan,
-        "runs": runs,
-        "failed": failed,
-        "diverged": diverged,
-        "verdict": str(verdict(measured, value, factor, (diverged + failed) / runs)),
+        "runs": sum(part.runs for part in present),
+        "failed": sum(len(part.failures) for part in present),
+        "diverged": sum(int(lost.sum()) for *_, lost in groups),
     }
 
 

@@ -43,7 +43,7 @@ class Result(NamedTuple):
         lost = np.zeros(self.runs, dtype=bool)
         for rule in rules:
             if rule.quantity in self.errors:
-                lost |= ~(self.figures(rule.quantity, "rms", rule.window) <= rule.above)
+                lost |= ~(self.figures(rule.quantity, rule.statistic, rule.window) <= rule.above)
         return lost & self.good
 
 

@@ -7,7 +7,12 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from debrisest.arrays import Array
-from debrisest.dynamics.kepler import MU_EARTH, propagate, state_from_elements
+from debrisest.dynamics.kepler import (
+    MU_EARTH,
+    propagate,
+    shape_and_anomaly,
+    state_from_elements,
+)
 
 angle = st.floats(0.0, 2 * np.pi)
 ellipse = st.tuples(
@@ -104,3 +109,18 @@ def test_open_orbits_are_refused() -> None:
         state_from_elements(7e6, 1.0, 0.0, 0.0, 0.0, 0.0)
     with pytest.raises(ValueError, match="ellipse"):
         state_from_elements(-7e6, 0.1, 0.0, 0.0, 0.0, 0.0)
+
+
+@given(
+    axis=st.floats(6.6e6, 5e7),
+    eccentricity=st.floats(1e-3, 0.9),
+    anomaly=st.floats(-3.1, 3.1),
+    angles=st.tuples(*[st.floats(0.0, 3.0)] * 3),
+)
+def test_shape_and_anomaly_are_those_of_the_elements(
+    axis: float, eccentricity: float, anomaly: float, angles: tuple[float, float, float]
+) -> None:
+    found = shape_and_anomaly(*state_from_elements(axis, eccentricity, *angles, anomaly))
+    assert found[0] == pytest.approx(axis, rel=1e-9)
+    assert found[1] == pytest.approx(eccentricity, rel=1e-8)
+    assert found[2] == pytest.approx(anomaly, abs=1e-8)

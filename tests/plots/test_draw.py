@@ -13,7 +13,7 @@ from debrisest import store
 from debrisest.arrays import Array, Data
 from debrisest.errors import UserError
 from debrisest.plan import Selection, plan
-from debrisest.plots.draw import FIGURES, draw_all
+from debrisest.plots.draw import FIGURES, Kind, draw_all
 from debrisest.plots.gather import all_runs, single_runs
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.tables.results import Result, load_results
@@ -108,7 +108,7 @@ def _names(paths: Iterable[Path]) -> set[str]:
 def test_everything_is_drawn_of_complete_results(scenario: LoadedScenario, tmp_path: Path) -> None:
     _store(scenario, tmp_path, ["simulate", "recover", "filter", "assess"])
     paths = list(draw_all(scenario, tmp_path, Selection(cases=["x"])))
-    single = [name for name, kind in FIGURES.items() if not kind.of_all_runs]
+    single = ["raw_quaternion", "recovered_quaternion", "rates"]
     assert _names(paths) == {
         f"{name}.{form}"
         for form in ("png", "svg")
@@ -228,6 +228,26 @@ def test_estimators_without_a_good_run_or_without_errors_have_no_figure(
     without = lost._replace(errors={"rate": lost.errors["rate"]})
     results = {("x", "lost"): lost, ("x", "without"): without}
     assert list(all_runs(scenario, results, QUANTITIES)) == []
+
+
+def test_figures_of_each_case_take_what_there_is(
+    scenario: LoadedScenario, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: dict[str, set[str]] = {}
+
+    def draw(data: Data, context: str) -> Figure:
+        drawn[context] = set(data)
+        return Figure()
+
+    kind = Kind(draw, ("rate_1",), of_all_runs=True, of_each_case=True, also=("rate_2", "nothing"))
+    monkeypatch.setattr("debrisest.plots.draw.FIGURES", {"each": kind})
+    _store(scenario, tmp_path, ["simulate", "recover", "filter", "assess"])
+    paths = list(draw_all(scenario, tmp_path, Selection()))
+    assert _names(paths) == {f"each-{case}-only.{f}" for case in "xyz" for f in ("png", "svg")}
+    assert list(drawn) == [
+        f"spin, estimator only, case {case}, 3 runs; left out: 0 diverged" for case in "xyz"
+    ]
+    assert all(names == {"time_s", "rate_1", "rate_2"} for names in drawn.values())
 
 
 def test_a_run_whose_filter_diverged_is_said_so(scenario: LoadedScenario, tmp_path: Path) -> None:

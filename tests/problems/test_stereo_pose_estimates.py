@@ -99,3 +99,22 @@ def test_the_step_promises_what_it_keeps(fast):
     promised = (step * at.gradient).sum(-1)
     after = linearize(fast.model, evidence, move(fast.model, at.state, step), 14).cost
     assert np.median(np.abs(at.cost - after - promised) / promised) < 0.3
+
+
+def test_the_bound_leaves_outliers_out_and_keeps_covariances(experiment):
+    """What is 100 sigma off is as good as missing; the kept covariances are those of the sigmas."""
+    test = experiment(2, 6, 8)
+    hit = np.random.default_rng(9).random(test.measured.shape) < 0.05
+    wild, holes = test.measured + 1e-3 * hit, np.where(hit, np.nan, test.measured)
+    found, expected = (
+        paired_errors(test.model, test.truth[:, 0], test.prior, test.covariance[0], y, [0, 5])
+        for y in (wild, holes)
+    )
+    for values, others in zip(found, expected):
+        np.testing.assert_array_equal(values, others)
+    for covariance, sigma in (
+        (found.filter_covariance, found.filter_sigma),
+        (found.smoother_covariance, found.smoother_sigma),
+    ):
+        spread = np.sqrt(np.diagonal(covariance, 0, -2, -1))
+        np.testing.assert_allclose(spread, sigma[:, [0, 5]], rtol=1e-12)

@@ -75,6 +75,44 @@ def test_figures_are_in_the_unit_of_the_tables(scenario: LoadedScenario) -> None
     assert np.isnan(rate["bound"])
 
 
+@pytest.mark.parametrize(
+    ("estimator", "bound", "measured"), [("triad", "bound", 2.0), ("smoother", "smoother_bound", 2)]
+)
+def test_a_bound_is_the_same_figure_of_the_estimator_of_that_name(
+    small: Path, estimator: str, bound: str, measured: float
+) -> None:
+    text = small.read_text().replace("\n  triad:", f"\n  {estimator}:")
+    small.write_text(text.replace("\n  wahba:", f"\n  {bound}:"))
+    half = result([0.5, 1.0, 1.5], [0.1, 0.1, 0.1])
+    found = {("slow", estimator): GOOD, ("slow", bound): half}
+    rows = cells(load_scenario(small), found)
+    rate = cell(rows, quantity="rate_1", window="40-60 s", estimator=estimator)
+    assert (rate["measured"], rate["bound"]) == (pytest.approx(measured), pytest.approx(1.0))
+    alone = cells(load_scenario(small), {("slow", estimator): GOOD})
+    assert alone["bound"].isna().all()
+
+
+def test_a_rule_of_divergence_may_name_its_statistic(small: Path) -> None:
+    """Two epochs of 100 deg/s among twenty: RMS 31.6, mean 10 deg/s."""
+    peak = result([0.0, 0.0], [0.1, 0.1])
+    peak.errors["rate"][1, 40:42] = 100 * DEG
+    text = small.read_text().replace("above: 90", "above: 20")
+    counts = []
+    for statistic in ("rms", "mean"):
+        small.write_text(text.replace("above: 20", f"above: 20, statistic: {statistic}"))
+        rows = rows_of(load_scenario(small), slow_triad=peak)
+        counts.append(cell(rows, quantity="rate_1", window="end")["diverged"])
+    assert counts == [1, 0]
+
+
+def test_an_instant_is_a_window(small: Path) -> None:
+    small.write_text(small.read_text().replace("windows: [40-60 s, end]", "windows: [50 s]"))
+    found = result([1.0, 2.0, 3.0], [0.1, 0.2, 0.3])
+    found.errors["rate_1"][:, 50] = 7 * DEG
+    rate = cell(rows_of(load_scenario(small), slow_triad=found), quantity="rate_1", window="50 s")
+    assert rate["measured"] == pytest.approx(7.0, rel=1e-6)
+
+
 def test_a_recovery_and_a_filter_share_the_name_of_their_error(scenario: LoadedScenario) -> None:
     rows = rows_of(scenario, slow_triad=GOOD)
     assert cell(rows, table="1", quantity="pitch")["measured"] == pytest.approx(0.4, rel=1e-6)

@@ -1,0 +1,53 @@
+"""Motion of a target as an observer on an orbit sees it from its own turning axes."""
+
+from typing import Literal
+
+import numpy as np
+
+from debrisest.arrays import Data
+from debrisest.clock import Clock
+from debrisest.draws import Draws
+from debrisest.dynamics import kepler
+from debrisest.dynamics.relative_orbit import leader_orbit
+from debrisest.dynamics.relative_pose import exact_rotation, exact_translation
+from debrisest.roles import SimulationPart, UnitQuaternion, Vector3
+
+_FRAME = "leader's orbital frame (radially outward, along track, orbit normal), origin at leader"
+
+
+class SeenFromLeader(SimulationPart):
+    """Two orbits and torque-free rotation in closed form; the scenario's orbit is the leader's.
+
+    Velocity and rate are relative to the leader's orbital frame and in its axes.
+    """
+
+    needs = ("true_inertia_ratio", "orbit_position", "orbit_velocity")
+    gives = ("true_position", "true_velocity", "true_q_lt", "true_rate_l")
+    frames = {"true_position": _FRAME, "true_velocity": _FRAME}
+    kind: Literal["seen_from_leader"]
+    position_m: Vector3
+    velocity_m_s: Vector3
+    q_lt: UnitQuaternion = [1.0, 0.0, 0.0, 0.0]
+    rate_deg_s: Vector3
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return position, velocity, attitude and rate relative to the leader."""
+        start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+        leader = leader_orbit(clock.times, *kepler.shape_and_anomaly(*start))
+        position, velocity = exact_translation(
+            clock.times, np.array(self.position_m), np.array(self.velocity_m_s), start
+        )
+        runs = len(draws.runs)
+        q_lt, rate_l = exact_rotation(
+            clock.times,
+            np.tile(self.q_lt, (runs, 1)),
+            np.tile(np.radians(self.rate_deg_s), (runs, 1)),
+            data["true_inertia_ratio"],
+            leader,
+        )
+        return {
+            "true_position": np.broadcast_to(position, (runs, *position.shape)),
+            "true_velocity": np.broadcast_to(velocity, (runs, *velocity.shape)),
+            "true_q_lt": q_lt,
+            "true_rate_l": rate_l,
+        }

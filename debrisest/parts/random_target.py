@@ -1,0 +1,48 @@
+"""A target that differs from run to run: features anywhere in a box."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import AfterValidator, Field
+
+from debrisest.arrays import Data
+from debrisest.clock import Clock
+from debrisest.draws import Draws, Stream
+from debrisest.dynamics import inertia_ratios
+from debrisest.roles import Positive, SimulationPart
+
+
+def _possible_ratios(k: list[float]) -> list[float]:
+    if not np.abs(inertia_ratios.slopes(np.array(k))).max() < 1:
+        raise ValueError(
+            "no body has these inertia ratios, ln(Ix/Iy) and ln(Iy/Iz): one principal moment "
+            "would exceed the sum of the two others (triangle inequality)"
+        )
+    return k
+
+
+InertiaRatios = Annotated[
+    list[float], Field(min_length=2, max_length=2), AfterValidator(_possible_ratios)
+]
+
+
+class RandomPoints(SimulationPart):
+    """Features spread evenly over a cube about the centre of mass, along principal axes."""
+
+    gives = ("true_point_b", "true_inertia_ratio", "true_inertia_b")
+    kind: Literal["random_points"]
+    count: Annotated[int, Field(ge=3)]
+    half_size_m: Positive
+    inertia_ratios: InertiaRatios = Field(description="ln(Ix/Iy) and ln(Iy/Iz)")
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return points drawn for each run, and the inertia, whose scale is free (Iy = 1)."""
+        drawn = draws.uniform(Stream.TRUTH, (self.count, 3))
+        ratios = np.tile(self.inertia_ratios, (len(drawn), 1))
+        moments = inertia_ratios.moments(ratios)
+        return {
+            "feature": np.array([f"p{i + 1}" for i in range(self.count)]),
+            "true_point_b": self.half_size_m * (2 * drawn - 1),
+            "true_inertia_ratio": ratios,
+            "true_inertia_b": moments[..., None] * np.eye(3),
+        }

@@ -1,0 +1,123 @@
+"""What the two cameras, the acceleration and the first guess of a leader give."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from debrisest.attitude import quaternion
+from debrisest.parts.stereo_sensors import AngularAcceleration, FirstGuess, StereoCamera
+
+TINY, STEP = 1e-14, 0.01
+
+
+def camera(**keys) -> StereoCamera:
+    given = {"pixel_noise": TINY, "flow_noise_1_s": TINY, "disparity_noise": TINY, "from_s": 0.0}
+    return StereoCamera(kind="stereo_camera", baseline_m=1.0, **(given | keys))
+
+
+def guess() -> FirstGuess:
+    return FirstGuess(
+        kind="first_guess",
+        position_sigma_m=1.0,
+        velocity_sigma_m_s=0.5,
+        rate_sigma_deg_s=2.0,
+        q_sigma=1e-3,
+        inertia_ratio_sigma=0.7,
+        point_sigma_m=0.2,
+    )
+
+
+def test_both_cameras_project_the_points(simulated: Callable) -> None:
+    data = simulated(camera())
+    turned = quaternion.rotate(data["true_q_lt"][..., None, :], data["true_point_b"][:, None])
+    x, y, z = np.moveaxis(data["true_position"][..., None, :] + turned, -1, 0)
+    assert data["measured_pixel"].shape == (4, 10, 2, 5, 2)
+    for number, offset in ((0, 0.0), (1, 1.0)):
+        expected = np.stack([(x - offset) / y, z / y], axis=-1)
+        assert data["measured_pixel"][:, :, number] == pytest.approx(expected, abs=1e-12)
+    difference = data["measured_pixel"][:, :, 1, :, 0] - data["measured_pixel"][:, :, 0, :, 0]
+    assert data["measured_disparity"] == pytest.approx(difference, abs=1e-12)
+
+
+def test_flow_is_the_derivative_of_the_pixels(simulated: Callable) -> None:
+    data = simulated(camera(), duration=1.0, step=STEP, rate=[-1.0, -1.0, 0.934])
+    slope = np.gradient(data["measured_pixel"], STEP, axis=1)[:, 1:-1]
+    assert slope == pytest.approx(data["measured_flow"][:, 1:-1], abs=1e-8)
+
+
+def test_noise_is_as_large_as_it_is_said_to_be(simulated: Callable) -> None:
+    noises = {"pixel_noise": 1e-3, "flow_noise_1_s": 2e-3, "disparity_noise": 3e-3}
+    noisy, clean = simulated(camera(**noises), runs=20), simulated(camera(), runs=20)
+    for name, noise, count in zip(("pixel", "flow", "disparity"), noises.values(), (4, 4, 1)):
+        gap = noisy[f"measured_{name}"] - clean[f"measured_{name}"]
+        assert gap.std() == pytest.approx(noise, rel=5 / np.sqrt(2 * 20 * 10 * 5 * count))
+        assert np.all(noisy[f"{name}_noise"] == noise)
+
+
+def test_what_is_switched_off_changes_nothing_else(simulated: Callable) -> None:
+    whole = simulated(camera(pixel_noise=1e-3))
+    part = simulated(camera(pixel_noise=1e-3, flow_noise_1_s=None, disparity_noise=None))
+    assert np.array_equal(whole["measured_pixel"], part["measured_pixel"])
+    assert not {"measured_flow", "flow_noise", "measured_disparity"} & part.keys()
+    with pytest.raises(ValidationError, match="measure nothing"):
+        camera(pixel_noise=None, flow_noise_1_s=None, disparity_noise=None)
+
+
+def test_missing_features_and_the_time_before_the_first(simulated: Callable) -> None:
+    data = simulated(camera(missing_per_frame=2, from_s=3.0), runs=30)
+    hidden = np.isnan(data["measured_disparity"])
+    assert hidden[:, :3].all()
+    assert np.all(hidden[:, 3:].sum(-1) == 2)
+    assert hidden[:, 3:].mean((0, 1)) == pytest.approx([0.4] * 5, abs=0.17)
+    assert np.array_equal(np.isnan(data["measured_pixel"]).all((2, 4)), hidden)
+    assert np.array_equal(np.isnan(data["measured_flow"]).any((2, 4)), hidden)
+
+
+def test_outliers_come_with_their_share_and_size(simulated: Callable) -> None:
+    hit = simulated(camera(pixel_noise=1e-5, outlier_share=0.02), runs=40)
+    clean = simulated(camera(pixel_noise=1e-5), runs=40)
+    gap = hit["measured_pixel"] - clean["measured_pixel"]
+    struck = gap != 0
+    assert struck.mean() == pytest.approx(0.02, abs=5 * np.sqrt(0.02 / struck.size))
+    assert np.abs(gap[struck]) == pytest.approx(np.full(struck.sum(), 1e-3), rel=1e-6)
+    assert 0.3 < (gap[struck] > 0).mean() < 0.7
+
+
+def test_a_point_behind_the_cameras_is_not_seen(simulated: Callable) -> None:
+    class Behind:
+        def simulate(self, data, clock, draws):
+            return {"true_position": data["true_position"] * [1, -1, 1]}
+
+    assert np.isnan(simulated(Behind(), camera())["measured_pixel"]).all()
+
+
+def test_acceleration_is_the_derivative_of_the_body_rate(simulated: Callable) -> None:
+    sensor = AngularAcceleration(kind="angular_acceleration", noise_rad_s2=1e-16, from_s=0.0)
+    data = simulated(sensor, runs=1, duration=1.0, step=STEP, rate=[-1.0, -1.0, 0.934])
+    seen = data["measured_angular_acceleration"][0]
+    position, velocity = data["orbit_position"][0], data["orbit_velocity"][0]
+    orbit_rate = np.linalg.norm(np.cross(position, velocity), axis=-1) / (position**2).sum(-1)
+    rate_l = data["true_rate_l"][0] + orbit_rate[:, None] * [0, 0, 1]
+    rate_b = quaternion.rotate(quaternion.conjugate(data["true_q_lt"][0]), rate_l)
+    assert seen[1:-1] == pytest.approx(np.gradient(rate_b, STEP, axis=0)[1:-1], abs=1e-9)
+    assert np.abs(seen).max() > 1e-5
+
+
+def test_the_first_guess_is_off_by_its_sigma(simulated: Callable) -> None:
+    data, runs = simulated(guess(), runs=300), 300
+    for name, sigma in (
+        *(("position", 1.0), ("velocity", 0.5), ("rate_l", np.radians(2))),
+        *(("inertia_ratio", 0.7), ("point_b", 0.2)),
+    ):
+        true = data[f"true_{name}"]
+        true = true if name in ("inertia_ratio", "point_b") else true[:, 0]
+        gap = data[f"start_{name}"] - true
+        assert gap.std() == pytest.approx(sigma, rel=5 / np.sqrt(2 * gap.size))
+        assert abs(gap.mean()) < 5 * sigma / np.sqrt(gap.size)
+        assert np.all(data[f"start_{name}_sigma"] == sigma)
+    q = data["start_q_lt"]
+    assert np.linalg.norm(q, axis=-1) == pytest.approx(np.ones(runs), abs=1e-12)
+    angle = quaternion.angle_between(q, data["true_q_lt"][:, 0])
+    assert np.sqrt((angle**2).mean() / 3) == pytest.approx(2e-3, rel=0.2)
