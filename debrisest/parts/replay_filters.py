@@ -1,8 +1,9 @@
 """Estimators at the bound, and the bound itself, for motions that follow from their start."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
 from debrisest.assessment.bound import paired_errors
 from debrisest.filters.replay import RATIO, replay, smooth
@@ -20,7 +21,7 @@ class Replay(FilterPart):
     kind: Literal["replay"]
     smoother: bool = False
     gate: bool = False
-    ratio: float = RATIO
+    ratio: Annotated[float, Field(ge=1)] = RATIO
     keep_s: KeptTimes = []
 
     def run(self, model: ReplayModel, given: Given) -> Filtered:
