@@ -31,8 +31,9 @@ def shortened(text: str) -> dict:
         "tables": {
             "diverged": [{"quantity": "position", "above": 5, "window": "10 s"}],
             "layout": [
-                table | {"quantities": QUANTITIES, "statistic": "p50", "windows": ["6-12 s"]},
-                table | {"quantities": ["nees"], "statistic": "median", "windows": ["1 s", "10 s"]},
+                table | {"quantities": QUANTITIES, "statistics": ["p50"], "windows": ["6-12 s"]},
+                table
+                | {"quantities": ["nees"], "statistics": ["median"], "windows": ["1 s", "10 s"]},
             ],
         },
     }

@@ -193,9 +193,9 @@ estimators:
     filter: {{kind: kalman}}
 tables:
   layout:
-    - {{table: spin, title: Spin rate, stage: filter, quantities: [rate_3], statistic: rms,
+    - {{table: spin, title: Spin rate, stage: filter, quantities: [rate_3], statistics: [rms],
        windows: [end]}}
-    - {{table: spin, title: Consistency, stage: filter, quantities: [nis], statistic: mean,
+    - {{table: spin, title: Consistency, stage: filter, quantities: [nis], statistics: [mean],
        windows: [10-25 s]}}
 """
 

@@ -78,13 +78,13 @@ class Divergence(Keys):
 
 
 class Table(Keys):
-    """Cells: every quantity by every window, for each case and estimator."""
+    """Cells: every quantity by every statistic and window, for each case and estimator."""
 
     table: str = Field(description="the paper's number, or a short word")
     title: str
     stage: Literal["recover", "filter"]
     quantities: Annotated[list[QuantityName], Field(min_length=1)]
-    statistic: StatisticName
+    statistics: Annotated[list[StatisticName], Field(min_length=1)]
     windows: Annotated[list[WindowText], Field(min_length=1)]
     cases: list[str] | None = Field(None, description="names of cases or means; default: all")
 

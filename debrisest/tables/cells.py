@@ -2,6 +2,7 @@
 
 import zlib
 from collections.abc import Callable, Hashable, Iterator, Mapping
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -77,11 +78,10 @@ def _disagreement(row: Mapping[Hashable, Any], entry: Published, expected: list[
 
 def _keys(table: Table, scenario: LoadedScenario) -> Iterator[tuple[CellKey, str]]:
     names = table.cases or [*scenario.cases, *scenario.common.tables.means]
-    for window in table.windows:
-        for case in names:
-            for estimator in scenario.common.estimators:
-                for quantity in table.quantities:
-                    yield CellKey(table.table, case, quantity, table.statistic, window), estimator
+    columns = product(table.statistics, table.windows)
+    cells = product(names, scenario.common.estimators, table.quantities)
+    for (statistic, window), (case, estimator, quantity) in product(columns, cells):
+        yield CellKey(table.table, case, quantity, statistic, window), estimator
 
 
 def _row(

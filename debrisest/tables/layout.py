@@ -1,5 +1,6 @@
 """Tables laid out as in the paper: a row per case, the sources side by side."""
 
+from itertools import product
 from typing import NamedTuple
 
 import pandas as pd
@@ -23,17 +24,17 @@ def sheets(scenario: LoadedScenario, cells: pd.DataFrame) -> list[Sheet]:
     """Return one sheet for each table and window of the scenario that has cells."""
     found = []
     for table in scenario.common.tables.layout:
-        for window in table.windows:
+        for statistic, window in product(table.statistics, table.windows):
             chosen = cells[
                 (cells["table"] == table.table)
                 & (cells["window"] == window)
-                & (cells["statistic"] == table.statistic)
+                & (cells["statistic"] == statistic)
                 & cells["quantity"].isin(table.quantities)
             ]
             if not chosen.empty:
                 heads, rows = _grid(chosen)
                 alone = f"{_heads(chosen)[0]}, " if len(table.quantities) == 1 else ""
-                title = f"{table.title}: {alone}{table.statistic}, {window}"
+                title = f"{table.title}: {alone}{statistic}, {window}"
                 found.append(Sheet(table.table, title, heads, rows))
     return found
 

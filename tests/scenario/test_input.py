@@ -110,7 +110,7 @@ BAD: dict[str, tuple[str, str, str, list[str]]] = {
         "scored_window: 40-60 s", "scored_window: late", "scored_window", ["'late'"],
     ),
     "unknown_statistic": (
-        "statistic: mean", "statistic: avarage", "statistic: avarage",
+        "statistics: [mean]", "statistics: [avarage]", "avarage",
         ["'avarage'", "allowed", "rmse"],
     ),
     "unknown_quantity": (
@@ -204,7 +204,7 @@ def test_several_problems_are_told_at_once(small: Path, sweep: Any) -> None:
     edited(small, "seed: 7", "seed: -7\nseed: 8")
     edited(small, "noise_m: 1e-2", "noise_cm: 1")
     edited(small, "[0.618, 0.707, 0.345]", "[0.1, 0.2, 0.9]")
-    edited(small, "statistic: mean", "statistic: avarage")
+    edited(small, "statistics: [mean]", "statistics: [avarage]")
     result = sweep(small, small.parent / "out")
     assert result.exit_code == 2
     for word in ("already given", "seed: must", "noise_cm", "triangle", "'avarage'"):
