@@ -13,6 +13,6 @@ pytest -n auto
 
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
-debrisest sweep configs/*.yaml --runs 4 --check --out "$results" >"$results/tables.txt"
-debrisest plot configs/*.yaml --runs 4 --case 1 --case fig4 --out "$results" >/dev/null
+debrisest sweep configs/*.yaml --runs 20 --check --out "$results" >"$results/tables.txt"
+debrisest plot configs/*.yaml --runs 20 --case 1 --case fig4 --case B --out "$results" >/dev/null
 echo "all checks passed"
