@@ -151,6 +151,8 @@ def plot(
         scenarios = _load(configs, settings)
         check_selection(scenarios, selection)
         for scenario in scenarios:
+            if not set(scenario.cases) & set(selection.cases or scenario.cases):
+                continue
             for path in draw_all(scenario, out, selection):
                 print(path)
 
