@@ -7,6 +7,7 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.model import Model
+from debrisest.filters.scan_model import ScanModel
 from debrisest.outcome import Outcome
 
 
@@ -71,7 +72,12 @@ class HistoryWriter:
     """
 
     def __init__(
-        self, model: Model, state: Array, covariance: Array, epochs: int, keep: Sequence[int] = ()
+        self,
+        model: Model | ScanModel,
+        state: Array,
+        covariance: Array,
+        epochs: int,
+        keep: Sequence[int] = (),
     ):
         _require_shapes(model, state, covariance, epochs, keep)
         runs, n = state.shape
@@ -159,7 +165,7 @@ def _finite(state: Array, covariance: Array) -> BoolArray:
 
 
 def _require_shapes(
-    model: Model, state: Array, covariance: Array, epochs: int, keep: Sequence[int]
+    model: Model | ScanModel, state: Array, covariance: Array, epochs: int, keep: Sequence[int]
 ) -> None:
     runs, n_e = state.shape[0], len(model.error_names)
     if covariance.shape != (runs, n_e, n_e) or model.process_noise.shape != (n_e, n_e):

@@ -1,0 +1,139 @@
+"""Update of tracks by the detections of one or more sensors, each with the probability to be it.
+
+Axes of all arrays: run, track, sensor, detection, as far as they have them, then components.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray
+from debrisest.filters.covariance import solve
+
+Weigh = Callable[[Array], Array]
+"""From squared distances (run, track, sensor, detection), infinite where not validated, to the
+probabilities of the detections."""
+
+
+class Tracks(NamedTuple):
+    """Gaussian beliefs."""
+
+    state: Array
+    """(run, track, n)."""
+    covariance: Array
+    """(run, track, n, n)."""
+
+
+class Scan(NamedTuple):
+    """What sensors show, compared with what was predicted."""
+
+    innovation: Array
+    """Detection minus prediction (run, track, sensor, detection, d), NaN where there is none."""
+    derivative: Array
+    """H of each sensor, (run, track, sensor, d, n); NaN where nothing can be predicted."""
+
+
+class Judged(NamedTuple):
+    """What was made of the detections, each (run, track, sensor, detection)."""
+
+    present: BoolArray
+    valid: BoolArray
+    distance: Array
+    """Squared, infinite where not validated."""
+    probability: Array
+
+
+class _Moments(NamedTuple):
+    """Of the innovation of each sensor."""
+
+    detected: Array
+    """Probability that the target's detection is among the validated, 1 - beta_0."""
+    mean: Array
+    """Combined innovation, (run, track, sensor, d)."""
+    spread: Array
+    """Of the innovation about `mean`, (run, track, sensor, d, d)."""
+
+
+def update(
+    tracks: Tracks, scan: Scan, noise: Array, gate: float, weigh: Weigh
+) -> tuple[Tracks, Judged]:
+    """Return the moments of the posterior mixture of which detection is whose.
+
+    All sensors share one gain, K of the stacked H. A sensor s whose detection is right with the
+    probability b_s moves the mean by K_s times its combined innovation, and
+
+        P+ = (I - K B H) P (I - K B H)^T + K blkdiag(b_s R + b_s (1 - b_s) H_s P H_s^T + P~_s) K^T,
+
+    the expectation over the sensors being right or not, independently, each with its b_s; P~_s is
+    the spread of the innovation. For one sensor it is the equation of probabilistic data
+    association (Li et al., Eq. 16) in Joseph's form. That equation has a single beta_0, which does
+    not serve two sensors. A sensor without a validated detection is left out of the stack.
+    """
+    usable = np.asarray(np.isfinite(scan.derivative).all((-2, -1)))
+    h = np.where(usable[..., None, None], scan.derivative, 0.0)
+    shown = h @ tracks.covariance[:, :, None] @ np.swapaxes(h, -2, -1)
+    judged, innovation = _judge(scan.innovation, usable, shown + noise, gate, weigh)
+    moments = _moments(innovation, judged.probability)
+    used = np.asarray(judged.valid.any(-1))[..., None, None]
+    return _moved(tracks, np.where(used, h, 0.0), shown, noise, moments), judged
+
+
+def _judge(
+    innovation: Array, usable: BoolArray, total: Array, gate: float, weigh: Weigh
+) -> tuple[Judged, Array]:
+    present = usable[..., None] & np.isfinite(innovation).all(-1)
+    nu = np.where(present[..., None], innovation, 0.0)
+    white = np.swapaxes(_solve(total, np.swapaxes(nu, -2, -1)), -2, -1)
+    distance = (nu * white).sum(-1)
+    valid = present & (distance <= gate)
+    distance = np.where(valid, distance, np.inf)
+    return Judged(present, valid, distance, weigh(distance)), nu
+
+
+def _moments(innovation: Array, probability: Array) -> _Moments:
+    detected = np.minimum(probability.sum(-1), 1.0)
+    mean = probability[..., None, :] @ innovation
+    apart = innovation - mean
+    spread = np.swapaxes(probability[..., None] * apart, -2, -1) @ apart
+    rest = (1.0 - detected)[..., None, None] * np.swapaxes(mean, -2, -1) * mean
+    return _Moments(detected, mean[..., 0, :], spread + rest)
+
+
+def _moved(tracks: Tracks, h: Array, shown: Array, noise: Array, moments: _Moments) -> Tracks:
+    b = moments.detected[..., None, None]
+    stacked, trusted = _stacked(h), _stacked(b * h)
+    cross = stacked @ tracks.covariance
+    every = np.broadcast_to(noise, shown.shape)
+    total = cross @ np.swapaxes(stacked, -2, -1) + _block_diagonal(every)
+    gain = _solve(total, cross)
+    correction = moments.mean.reshape(*stacked.shape[:2], 1, -1) @ gain
+    kept = np.eye(h.shape[-1]) - np.swapaxes(trusted, -2, -1) @ gain
+    spread = _block_diagonal(b * every + b * (1.0 - b) * shown + moments.spread)
+    covariance = np.swapaxes(kept, -2, -1) @ tracks.covariance @ kept
+    covariance = covariance + np.swapaxes(gain, -2, -1) @ spread @ gain
+    return Tracks(
+        state=tracks.state + correction[..., 0, :],
+        covariance=0.5 * (covariance + np.swapaxes(covariance, -2, -1)),
+    )
+
+
+def _stacked(h: Array) -> Array:
+    return h.reshape(*h.shape[:2], -1, h.shape[-1])
+
+
+def _block_diagonal(blocks: Array) -> Array:
+    """One matrix (run, track, sensor d, sensor d) of the sensors' (run, track, sensor, d, d)."""
+    sensors, d = blocks.shape[-3:-1]
+    if sensors == 1:
+        return blocks[:, :, 0]
+    full = np.zeros((*blocks.shape[:2], sensors, d, sensors, d))
+    for s in range(sensors):
+        full[:, :, s, :, s] = blocks[:, :, s]
+    return full.reshape(*blocks.shape[:2], sensors * d, sensors * d)
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    """Solution for every leading index; NaN where the matrix is singular."""
+    solved = solve(matrix.reshape(-1, *matrix.shape[-2:]), right.reshape(-1, *right.shape[-2:]))
+    return solved.reshape(right.shape)
