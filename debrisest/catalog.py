@@ -5,20 +5,38 @@ A new motion, sensor, problem or filter is a new file and a new line here.
 
 from typing import get_args
 
+from debrisest.parts.association_filters import (
+    AssociationFilter,
+    JointAssociation,
+    KnownAssociation,
+    LinearisedAtTruth,
+)
+from debrisest.parts.camera_range_sensors import CameraRange
+from debrisest.parts.detections import Detections
 from debrisest.parts.filters import Extended, Unscented
 from debrisest.parts.leader_motion import SeenFromLeader
 from debrisest.parts.motions import GravityGradient, TorqueFree
 from debrisest.parts.observers import Drift, Hold
-from debrisest.parts.orbits import KeplerOrbit
+from debrisest.parts.orbits import KeplerOrbit, PerturbedOrbit
+from debrisest.parts.random_box import RandomBox
+from debrisest.parts.pointing import PointingControl
 from debrisest.parts.random_target import RandomPoints
+from debrisest.parts.random_tumble import RandomTumble
 from debrisest.parts.recoveries import BasisPursuit
+from debrisest.parts.relative_ellipse import ClosedEllipse
 from debrisest.parts.replay_filters import Efficient, Replay
+from debrisest.parts.satellites import Satellite
 from debrisest.parts.sensors import FeaturePoints
-from debrisest.parts.starts import Drawn, FirstSamples
+from debrisest.parts.shape_guess import Guessed, ShapeGuess
+from debrisest.parts.starts import Drawn, FirstPoints, FirstSamples
 from debrisest.parts.stereo_sensors import AngularAcceleration, FirstGuess, StereoCamera
 from debrisest.parts.targets import RigidPoints
+from debrisest.parts.tracking_sensors import AttitudeKnowledge, OrbitGuess, PinholeCamera
+from debrisest.problems.camera_range_redundant import CameraRangeRedundant
+from debrisest.problems.orbit_from_pixels import OrbitFromPixels
 from debrisest.problems.stereo_pose import StereoPose, StereoPoseAdditive
 from debrisest.problems.tumbling_attitude import TumblingAttitude
+from debrisest.problems.tumbling_points import TumblingPoints
 from debrisest.roles import Part
 
 
@@ -28,13 +46,41 @@ def kind_of(part: type[Part]) -> str:
 
 
 CATALOG: dict[str, list[type[Part]]] = {
-    "target": [RigidPoints, RandomPoints],
-    "orbit": [KeplerOrbit],
-    "motion": [TorqueFree, GravityGradient, SeenFromLeader],
-    "observers": [Hold, Drift],
-    "sensors": [FeaturePoints, StereoCamera, AngularAcceleration, FirstGuess],
+    "target": [RigidPoints, RandomPoints, RandomBox],
+    "orbit": [KeplerOrbit, PerturbedOrbit],
+    "motion": [TorqueFree, GravityGradient, SeenFromLeader, RandomTumble],
+    "observers": [Hold, Drift, Satellite, ClosedEllipse],
+    "sensors": [
+        FeaturePoints,
+        StereoCamera,
+        AngularAcceleration,
+        FirstGuess,
+        PinholeCamera,
+        PointingControl,
+        AttitudeKnowledge,
+        Detections,
+        OrbitGuess,
+        CameraRange,
+        ShapeGuess,
+    ],
     "recovery": [BasisPursuit],
-    "problem": [TumblingAttitude, StereoPoseAdditive, StereoPose],
-    "start": [FirstSamples, Drawn],
-    "filter": [Unscented, Extended, Replay, Efficient],
+    "problem": [
+        TumblingAttitude,
+        TumblingPoints,
+        StereoPoseAdditive,
+        StereoPose,
+        CameraRangeRedundant,
+        OrbitFromPixels,
+    ],
+    "start": [FirstSamples, FirstPoints, Drawn, Guessed],
+    "filter": [
+        Unscented,
+        Extended,
+        Replay,
+        Efficient,
+        AssociationFilter,
+        JointAssociation,
+        KnownAssociation,
+        LinearisedAtTruth,
+    ],
 }

@@ -14,6 +14,8 @@ from debrisest.scenario.mistakes import allowed_names
 from debrisest.stages.pipeline import STAGES, stages_of
 
 RUNS_PER_FILE = 20
+SIMULATED = "-"
+"""Stands for the estimator in cells of what was simulated; no estimator can have this name."""
 
 
 @dataclass(frozen=True)
@@ -58,17 +60,19 @@ class Selection:
     def asks_for(self, case: str, estimator: str, means: Container[str]) -> bool:
         """Return whether a cell belongs to it; means belong to a selection of all cases."""
         case_fits = self.cases is None or (case in self.cases and case not in means)
-        return case_fits and (self.estimators is None or estimator in self.estimators)
+        if estimator == SIMULATED or self.estimators is None:
+            return case_fits
+        return case_fits and estimator in self.estimators
 
 
 def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step]:
     """Return every step that the selection needs, upstream first, with the reasons to run."""
     cases = [name for name in scenario.cases if name in (selection.cases or scenario.cases)]
-    known = list(scenario.common.estimators)
-    estimators = [name for name in known if name in (selection.estimators or known)]
     steps: list[Step] = []
     for name in cases:
         case = scenario.cases[name]
+        wanted_of = selection.estimators or case.estimators
+        estimators = [one for one in case.estimators if one in wanted_of]
         folder = out / scenario.name / name
         wanted = selection.runs or case.scenario.runs
         for first in range(0, wanted, RUNS_PER_FILE):

@@ -45,6 +45,13 @@ class Part(Keys, ABC):
     """Datasets that a part before this one must give."""
     gives: ClassVar[tuple[str, ...]] = ()
     """Datasets that later parts can count on."""
+    extends: ClassVar[tuple[str, ...]] = ()
+    """Datasets that several parts give together, each of them its share."""
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """Return the datasets that this very part needs, as its keys have it."""
+        return self.needs
 
     def fingerprint(self) -> dict[str, Any]:
         """Return what this part's results depend on: its keys and its version."""
@@ -56,10 +63,16 @@ class SimulationPart(Part):
 
     frames: ClassVar[dict[str, str]] = {}
     """The axes and origin of datasets whose name does not tell them."""
+    tried: ClassVar[bool] = False
+    """Whether the first two epochs are simulated when a scenario is read, for it to be refused."""
 
     @abstractmethod
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the new datasets; ``data`` holds those of the parts before this one."""
+
+    def simulate_named(self, name: str, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return the same, for a part whose datasets tell the name that the scenario gave it."""
+        return self.simulate(data, clock, draws)
 
 
 class RecoveryPart(Part):
@@ -93,7 +106,7 @@ class Given(NamedTuple):
     """(run, time, m), NaN where nothing is."""
     clock: Clock
     truth: Array | None = None
-    """True states (run, time, n), for a bound; no estimator looks at them."""
+    """True states (run, time, n), for a bound or a diagnostic; no estimate depends on them."""
 
 
 class Filtered(NamedTuple):

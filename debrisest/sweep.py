@@ -79,8 +79,16 @@ def tabulate(
     scenario: LoadedScenario, out: Path, runs: int | None
 ) -> tuple[pd.DataFrame, list[Step]]:
     """Return the cells of all results that are up to date, and the results that are not."""
-    steps = [step for step in plan(scenario, out, Selection(runs)) if step.stage == "assess"]
-    return cells(scenario, load_results(steps)), [step for step in steps if step.reason]
+    simulated = {
+        name
+        for table in scenario.common.tables.layout
+        if table.stage == "simulate"
+        for name in table.quantities
+    }
+    shown = {"assess", "simulate"} if simulated else {"assess"}
+    steps = [step for step in plan(scenario, out, Selection(runs)) if step.stage in shown]
+    rows = cells(scenario, load_results(steps, simulated))
+    return rows, [step for step in steps if step.reason]
 
 
 def chosen(rows: pd.DataFrame, selection: Selection, means: Container[str]) -> pd.DataFrame:

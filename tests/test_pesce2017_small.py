@@ -113,6 +113,16 @@ def test_what_the_filters_count_is_stored(swept: Path) -> None:
     assert best["position_error"].shape == (RUNS, EPOCHS, 3)
 
 
+def test_the_excess_cost_of_the_truth_is_that_of_a_consistent_estimator(swept: Path) -> None:
+    """Three chi-squares of 29 degrees: within five standard deviations, 0.15 each."""
+    for estimator, epochs in (("best", [1, 10, 11]), ("smoother", [11]), ("pixels_only", [11])):
+        found = store.read(swept / "A-deg" / f"assess-{estimator}.000000.h5")
+        assert np.all(np.abs(found["w"][:, epochs].mean(axis=0) - 1) < 0.76)
+        assert np.all(found["w_dof"][:, epochs] == 29)
+        assert np.all(np.isnan(found["w"]) == (found["w_dof"] == 0))
+    assert "w" not in store.read(swept / "A-deg" / "assess-bound.000000.h5")
+
+
 def test_the_frame_of_a_position_is_told(swept: Path) -> None:
     with h5py.File(swept / "A-deg" / "simulate.000000.h5", "r") as file:
         assert "leader" in file["true_position"].attrs["frame"]

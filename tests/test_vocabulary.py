@@ -16,11 +16,14 @@ SCALES = {
     ("rad/s", "deg/s"): 57.29577951308232,
     ("m", "m"): 1.0,
     ("m", "km"): 0.001,
+    ("m2", "km2"): 1e-6,
+    ("rad", "mrad"): 1000.0,
     ("m/s", "m/s"): 1.0,
     ("1", "1"): 1.0,
     ("s", "s"): 1.0,
     ("px", "px"): 1.0,
     ("N m", "mN m"): 1000.0,
+    ("kg m2", "kg m2"): 1.0,
 }
 TABLE_QUANTITIES = [name for name, quantity in VOCABULARY.items() if quantity.table_unit]
 

@@ -2,25 +2,18 @@
 
 NEES and NIS are normalised squares that follow a chi-square distribution, with as many degrees of
 freedom as there are errors, or innovations, if the covariances are right. The chart-free statistic
-compares costs instead, which no choice of coordinates for the errors can bend.
+compares costs instead, which no choice of coordinates for the errors can bend. The interval of a
+statistic is where that of a consistent estimator lies with a probability of 95 %.
 """
-
-from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array
 
 CONFIDENCE = 0.95
-
-
-class Verdict(NamedTuple):
-    """A mean of normalised squares per degree of freedom, its interval if consistent, in words."""
-
-    mean: float
-    low: float
-    high: float
-    words: str
+_MEANS, _MEDIANS = ("mean", "value", "rmse"), ("median", "p50")
+_MEAN_SQUARES = ("rmse", "median")
+"""Statistics that take a root mean square over the epochs of a window."""
 
 
 def normalized_square(error: Array, covariance: Array) -> Array:
@@ -56,23 +49,61 @@ def interval(freedom: Array, confidence: float = CONFIDENCE) -> tuple[Array, Arr
     return np.asarray(chi2.ppf(tail, count) / count), np.asarray(chi2.isf(tail, count) / count)
 
 
-def verdict(squares: Array, freedom: Array | int, confidence: float = CONFIDENCE) -> Verdict:
-    """Judge independent normalised squares (any shape), each with its degrees of freedom.
+def consistent_interval(
+    statistic: str, groups: list[Array], confidence: float = CONFIDENCE
+) -> tuple[float, float]:
+    """Interval of a statistic over runs of squares per degree of freedom, averaged over groups.
 
-    Squares of different runs are independent; those of one run at different epochs are so for NIS,
-    not for NEES. NaN and squares without freedom do not count.
+    Each group holds the degrees of freedom (run,) of independent runs. The statistics are means and
+    the medians, which a few outlying runs do not move; NaN for all others, and without any run.
     """
-    counts = np.broadcast_to(np.asarray(freedom, dtype=np.float64), np.shape(squares))
-    used = np.isfinite(squares) & (counts > 0)
-    total = float(counts[used].sum())
-    if total == 0.0:
-        return Verdict(np.nan, np.nan, np.nan, "unknown: nothing to judge by")
-    mean = float(squares[used].sum() / total)
-    low, high = (float(bound) for bound in interval(np.asarray(total), confidence))
-    if mean > high:
-        words = "over-confident: the errors are larger than the covariance says"
-    elif mean < low:
-        words = "over-cautious: the errors are smaller than the covariance says"
-    else:
-        words = "consistent"
-    return Verdict(mean, low, high, words)
+    if not groups or any(len(group) == 0 or not (group > 0).all() for group in groups):
+        return np.nan, np.nan
+    if statistic in _MEANS:
+        low, high = interval(pooled(np.stack([pooled(group) for group in groups])), confidence)
+        return float(low), float(high)
+    if statistic in _MEDIANS:
+        ends = [_median_interval(pooled(g) / len(g), len(g), confidence) for g in groups]
+        return float(np.mean([low for low, _ in ends])), float(np.mean([high for _, high in ends]))
+    return np.nan, np.nan
+
+
+def freedom_of_runs(statistic: str, freedom: Array, white: bool) -> Array:
+    """Degrees of freedom (run,) of a run's figure over the epochs of ``freedom (run, epoch)``.
+
+    ``white`` squares are independent between epochs, as innovations are. Others, as errors are, may
+    all say the same: their mean is taken to spread like a single one, so that the interval is never
+    too narrow. Epochs without freedom do not count. The mean square of several epochs follows no
+    chi-square distribution: 0, as where there is no freedom at all.
+    """
+    known = freedom > 0
+    count = known.sum(-1)
+    inverse = np.divide(1.0, freedom, out=np.zeros(freedom.shape), where=known).sum(-1)
+    together = np.divide(count**2, inverse, out=np.zeros(len(count)), where=count > 0)
+    if statistic in _MEAN_SQUARES:
+        together = np.where(count == 1, together, 0.0)
+    return np.asarray(together if white else together / np.maximum(count, 1))
+
+
+def pooled(freedom: Array) -> Array:
+    """Degrees of freedom of the mean of independent squares, each over its own ``freedom (n,)``.
+
+    Their sum where all have the same number, else those of the chi-square distribution that has the
+    mean's variance (Satterthwaite).
+    """
+    return np.asarray(len(freedom) ** 2 / np.sum(1.0 / freedom))
+
+
+def _median_interval(freedom: Array, runs: int, confidence: float) -> tuple[float, float]:
+    """Interval of the median of ``runs`` squares per degree of freedom.
+
+    Of n uniform draws, n odd, the middle one follows Beta((n + 1) / 2, (n + 1) / 2); the mean of
+    the two middle ones of an even n nearly follows the beta distribution of its variance,
+    n / (4 (n + 1) (n + 2)). Runs of different freedom are taken at their harmonic mean.
+    """
+    from scipy.stats import beta, chi2
+
+    count = runs + 2 if runs % 2 else (runs + 1) * (runs + 2) / runs
+    half, tail = 0.5 * (count - 1), 0.5 * (1.0 - confidence)
+    low, high = chi2.ppf(beta.ppf([tail, 1.0 - tail], half, half), freedom) / freedom
+    return float(low), float(high)

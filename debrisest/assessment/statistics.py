@@ -43,6 +43,10 @@ def _mean_absolute(values: Array) -> Array:
     return np.asarray(np.mean(np.abs(values), axis=-1))
 
 
+def _largest(values: Array) -> Array:
+    return np.asarray(np.max(values, axis=-1))
+
+
 def _percentile(share: float) -> Callable[[Array], Array]:
     return lambda values: np.percentile(values, share, axis=-1)
 
@@ -58,6 +62,7 @@ STATISTICS: dict[str, Statistic] = {
     "mean": Statistic(_mean_of_known, _mean),
     "value": Statistic(_mean, _mean),
     "share": Statistic(_mean, _mean),
+    "ever": Statistic(_largest, _mean),
 }
 
 

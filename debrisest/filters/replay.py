@@ -14,6 +14,7 @@ from debrisest.arrays import Array, IntArray
 from debrisest.filters.evidence import Evidence, take, weigh
 from debrisest.filters.frame_update import FRAME_ITERATIONS, Belief, Frame, predict, update
 from debrisest.filters.gauss_newton import Solution, gauss_newton, move
+from debrisest.filters.replay_cost import write_costs
 from debrisest.filters.replay_estimates import Estimates, ReplayStatus, empty, finite, write
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.robust import robust_newton
@@ -35,19 +36,22 @@ def replay(
     gate: bool = False,
     keep: Sequence[int] = (),
     also: Sequence[int] = (),
+    beside: Array | None = None,
 ) -> Estimates:
     """Estimate a batch of runs from the prior ``(run, n)`` of epoch 0 and its plain covariance.
 
     `covariance` is (run, n_e, n_e), `measured` (run, time, m) with NaN = not observed; `keep` lists
     the epochs whose covariance is wanted, `also` epochs to replay at besides the anchors. With
     `gate`, outliers are kept out: by their innovation between anchors; at every anchor the
-    residuals of all epochs decide again, so that nothing is locked out for good.
+    residuals of all epochs decide again, so that nothing is locked out for good. `beside` (run, n)
+    is a state of epoch 0, such as the truth, whose cost is wanted at the kept epochs beside that of
+    the estimate; no estimate depends on it.
     """
     _require_shapes(model, prior, covariance, measured, ratio)
     with np.errstate(all="ignore"):
         evidence = weigh(model, prior, covariance, measured)
         result = empty((*measured.shape[:2], prior.shape[-1]), len(model.error_names), keep)
-        _filter(model, evidence, _schedule(evidence, ratio, also), gate, result)
+        _filter(model, evidence, _schedule(evidence, ratio, also), gate, result, beside)
     return result
 
 
@@ -59,11 +63,12 @@ def smooth(
     filtered: Estimates,
     gate: bool = False,
     keep: Sequence[int] = (),
+    beside: Array | None = None,
 ) -> Estimates:
     """Return the maximum a posteriori motion given all measurements.
 
-    Gauss-Newton to convergence, from where `replay` of the same data ended. `cost` is set at the
-    last epoch only; `nis` is that of the filter.
+    Gauss-Newton to convergence, from where `replay` of the same data ended. `cost` and
+    `cost_beside` are set at the last epoch only; `nis` is that of the filter.
     """
     last = measured.shape[1] - 1
     result = empty(filtered.state.shape, len(model.error_names), keep)
@@ -84,7 +89,7 @@ def smooth(
             transition = model.transition(sensitivity[:, k], 0, k)
             moved = transition @ spread @ np.swapaxes(transition, -1, -2)
             write(result, k, runs, states[:, k], moved)
-    result.cost[runs, last] = solution.cost
+        write_costs(model, result, last, runs, evidence, (best, beside))
     _judge(result, runs, solution)
     return result
 
@@ -107,7 +112,12 @@ def _schedule(evidence: Evidence, ratio: float, also: Sequence[int]) -> list[int
 
 
 def _filter(
-    model: ReplayModel, evidence: Evidence, schedule: list[int], gate: bool, result: Estimates
+    model: ReplayModel,
+    evidence: Evidence,
+    schedule: list[int],
+    gate: bool,
+    result: Estimates,
+    beside: Array | None,
 ) -> None:
     back = model.inverse_chart(evidence.prior)
     belief = Belief(evidence.prior, np.swapaxes(back, -1, -2) @ evidence.information @ back)
@@ -132,6 +142,9 @@ def _filter(
             runs, belief, evidence = runs[kept], take(belief, kept), take(evidence, kept)
             frame = take(frame, kept)
         _record(model, result, k, runs, belief, frame)
+        if k in result.kept:
+            motions = model.rewind(belief.state, k), beside
+            write_costs(model, result, k, runs, evidence, motions)
 
 
 def _record(

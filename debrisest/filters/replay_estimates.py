@@ -47,7 +47,9 @@ class Estimates(NamedTuple):
     rejected: IntArray
     """Number of rows that the gate kept out at the time, (run, time)."""
     cost: Array
-    """Cost of the estimate at the anchors, (run, time), NaN between them."""
+    """Cost of the estimate at anchors and kept epochs, (run, time), NaN at the others."""
+    cost_beside: Array
+    """Cost, by the same measurements, of a motion beside the estimate, at the kept epochs."""
     status: IntArray
     """`ReplayStatus` codes, (run,)."""
     diverged_at: IntArray
@@ -69,6 +71,7 @@ def empty(shape: tuple[int, int, int], n_e: int, keep: Sequence[int]) -> Estimat
         nis_dof=np.zeros((runs, epochs), dtype=np.int64),
         rejected=np.zeros((runs, epochs), dtype=np.int64),
         cost=np.full((runs, epochs), np.nan),
+        cost_beside=np.full((runs, epochs), np.nan),
         status=np.full(runs, ReplayStatus.NO_START, dtype=np.int64),
         diverged_at=np.zeros(runs, dtype=np.int64),
     )

@@ -34,12 +34,19 @@ class Unscented(FilterPart):
     beta: float = 2.0
     kappa: float = 0.0
     redraw: bool = False
+    keep_s: KeptTimes = []
 
     def run(self, model: Model, given: Given) -> Filtered:
         """Return the estimates of all epochs."""
         spread = UnscentedParameters(self.alpha, self.beta, self.kappa)
         history = unscented(
-            model, given.state, given.covariance, given.measured, spread, redraw=self.redraw
+            model,
+            given.state,
+            given.covariance,
+            given.measured,
+            spread,
+            keep=kept_epochs(self.keep_s, given.clock),
+            redraw=self.redraw,
         )
         return _filtered(history)._replace(counts={"repairs": history.repairs})
 

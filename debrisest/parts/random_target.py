@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from debrisest.arrays import Data
+from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
 from debrisest.dynamics import inertia_ratios
@@ -27,22 +27,35 @@ InertiaRatios = Annotated[
 
 
 class RandomPoints(SimulationPart):
-    """Features spread evenly over a cube about the centre of mass, along principal axes."""
+    """Features spread evenly over a cube about the centre of mass, along principal axes.
 
-    gives = ("true_point_b", "true_inertia_ratio", "true_inertia_b")
+    The surface at a feature is parallel to the face of the cube that the feature is nearest to: a
+    boxy body with panels that are set back.
+    """
+
+    version = 2
+    gives = ("true_point_b", "true_normal_b", "true_inertia_ratio", "true_inertia_b")
     kind: Literal["random_points"]
     count: Annotated[int, Field(ge=3)]
     half_size_m: Positive
     inertia_ratios: InertiaRatios = Field(description="ln(Ix/Iy) and ln(Iy/Iz)")
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
-        """Return points drawn for each run, and the inertia, whose scale is free (Iy = 1)."""
+        """Return points drawn for each run, their normals, and the inertia, scaled to Iy = 1."""
         drawn = draws.uniform(Stream.TRUTH, (self.count, 3))
         ratios = np.tile(self.inertia_ratios, (len(drawn), 1))
         moments = inertia_ratios.moments(ratios)
+        points = self.half_size_m * (2 * drawn - 1)
         return {
             "feature": np.array([f"p{i + 1}" for i in range(self.count)]),
-            "true_point_b": self.half_size_m * (2 * drawn - 1),
+            "true_point_b": points,
+            "true_normal_b": _normals_of_nearest_faces(points),
             "true_inertia_ratio": ratios,
             "true_inertia_b": moments[..., None] * np.eye(3),
         }
+
+
+def _normals_of_nearest_faces(points: Array) -> Array:
+    """Outward unit normals (..., 3) of the faces of a cube about the origin."""
+    nearest = np.abs(points).argmax(-1)
+    return np.asarray(np.eye(3)[nearest] * np.where(points < 0, -1.0, 1.0))

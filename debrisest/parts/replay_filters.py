@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from debrisest.arrays import Data
 from debrisest.assessment.bound import paired_errors
 from debrisest.filters.replay import RATIO, replay, smooth
 from debrisest.filters.replay_estimates import ReplayStatus
@@ -17,6 +18,7 @@ from debrisest.roles import Filtered, FilterPart, Given
 class Replay(FilterPart):
     """Maximum a posteriori at every epoch of all measurements so far, or of all there are."""
 
+    version = 2
     needs = ("replay_model",)
     kind: Literal["replay"]
     smoother: bool = False
@@ -28,10 +30,14 @@ class Replay(FilterPart):
         """Return the estimates of all epochs."""
         known = given.state, given.covariance, given.measured
         keep = kept_epochs(self.keep_s, given.clock)
-        found = replay(model, *known, ratio=self.ratio, gate=self.gate, keep=keep)
-        counts = {"rejected": found.rejected} if self.gate else {}
+        beside = None if given.truth is None else given.truth[:, 0]
+        found = replay(model, *known, ratio=self.ratio, gate=self.gate, keep=keep, beside=beside)
+        counts: Data = {"rejected": found.rejected} if self.gate else {}
         if self.smoother:
-            found = smooth(model, *known, found, gate=self.gate, keep=keep)
+            found = smooth(model, *known, found, gate=self.gate, keep=keep, beside=beside)
+        counts |= {"cost": found.cost}
+        if beside is not None:
+            counts |= {"cost_of_truth": found.cost_beside}
         return Filtered(
             *(found.state, found.sigma, found.covariance, found.kept, found.nis, found.nis_dof),
             status=sentences(found.status, ReplayStatus),

@@ -15,14 +15,15 @@ from debrisest.target.visibility import back_face_visible
 class FeaturePoints(SimulationPart):
     """Coordinates of the visible features relative to the chaser, in inertial axes."""
 
+    version = 2
     needs = ("true_point_b", "true_normal_b", "true_q_ib", "true_position")
-    gives = ("measured_point",)
+    gives = ("measured_point", "point_noise")
     kind: Literal["feature_points"]
     noise_m: NonNegative
     visibility: Literal["back_face", "all"] = "back_face"
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
-        """Return the measured points (run, time, feature, 3), NaN where a feature is hidden."""
+        """Return the points (run, time, feature, 3), NaN where one is hidden, and their noise."""
         points, q_ib = data["true_point_b"][:, None], data["true_q_ib"]
         rotated = quaternion.rotate(q_ib[..., None, :], points)
         noise = draws.normal(Stream.MEASUREMENT_NOISE, rotated.shape[1:])
@@ -32,4 +33,4 @@ class FeaturePoints(SimulationPart):
                 points, data["true_normal_b"][:, None], q_ib, -data["true_position"]
             )
             measured[~seen] = np.nan
-        return {"measured_point": measured}
+        return {"measured_point": measured, "point_noise": np.full(len(measured), self.noise_m)}

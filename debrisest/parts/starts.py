@@ -5,17 +5,18 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from debrisest.arrays import Data
+from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
+from debrisest.attitude.points import wahba
 from debrisest.clock import Clock
 from debrisest.problems.tumbling_attitude import Variances
+from debrisest.problems.tumbling_points import MotionVariances
 from debrisest.roles import StartPart
 
 
 class Drawn(StartPart):
     """What a sensor knows of the target at time zero, with the sigma of every quantity."""
 
-    needs = ("start_position",)
     kind: Literal["drawn"]
 
     def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:
@@ -50,3 +51,38 @@ class FirstSamples(StartPart):
             "moments_b": np.full((runs, 3), 1 / np.sqrt(3)),
         }
         return guess, self.variance.model_dump()
+
+
+class FirstPoints(StartPart):
+    """Attitude and rate from the first epochs that have an attitude, equal moments.
+
+    These epochs are measurements too: the guess tells where to begin, and variances should be wide
+    enough that it carries practically no information of its own.
+    """
+
+    needs = ("measured_point", "known_point_f")
+    kind: Literal["first_points"]
+    samples: Annotated[int, Field(ge=2)] = 5
+    variance: MotionVariances
+
+    def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:
+        """Return the initial guess by name, NaN without an attitude, and its variance by name."""
+        q_if = quaternion.from_matrix(wahba(data["known_point_f"][0], data["measured_point"]))
+        rate = _first_rate(q_if, self.samples) / clock.step
+        first = np.argmax(np.isfinite(q_if[..., 0]), axis=-1)
+        turned_back = quaternion.exp(-rate * (clock.step * first)[:, None])
+        guess: Data = {
+            "q_if": quaternion.multiply(q_if[np.arange(len(q_if)), first], turned_back),
+            "rate_f": rate,
+            "log_inertia": np.zeros((len(q_if), 5)),
+        }
+        return guess, self.variance.model_dump()
+
+
+def _first_rate(q: Array, samples: int) -> Array:
+    """Mean turn (run, 3) in an epoch, of the first ``samples - 1`` pairs of epochs that tell it."""
+    turn = quaternion.log(quaternion.multiply(quaternion.conjugate(q[:, :-1]), q[:, 1:]))
+    known = np.isfinite(turn).all(axis=-1)
+    used = (known & (np.cumsum(known, axis=-1) < samples))[..., None]
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.where(used, turn, 0.0).sum(axis=1) / used.sum(axis=1))

@@ -13,6 +13,7 @@ from debrisest.dynamics import inertia_ratios, kepler
 from debrisest.dynamics.relative_orbit import leader_orbit
 from debrisest.roles import NonNegative, Positive, SimulationPart
 from debrisest.sensors import stereo
+from debrisest.target.visibility import back_face_visible
 
 _POSE = ("true_position", "true_velocity", "true_q_lt", "true_rate_l")
 
@@ -20,8 +21,8 @@ _POSE = ("true_position", "true_velocity", "true_q_lt", "true_rate_l")
 class StereoCamera(SimulationPart):
     """Two parallel cameras that look along track: slopes, their flow, and the disparity.
 
-    A noise that is not given means "not measured". A feature can be missing, as a whole, and any
-    single value can be an outlier.
+    A noise that is not given means "not measured". A feature can be missing, as a whole, by chance
+    or because the surface there faces away, and any single value can be an outlier.
     """
 
     needs = (*_POSE, "true_point_b")
@@ -33,6 +34,7 @@ class StereoCamera(SimulationPart):
     disparity_noise: Positive | None = None
     from_s: NonNegative = Field(1.0, description="time of the first measurement")
     missing_per_frame: Annotated[int, Field(ge=0)] = 0
+    occlusion: bool = Field(False, description="features whose surface faces away are not seen")
     outlier_share: Annotated[float, Field(ge=0, le=1)] = 0.0
     outlier_sigmas: NonNegative = 100.0
 
@@ -45,15 +47,22 @@ class StereoCamera(SimulationPart):
             )
         return self
 
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """Return the datasets that are needed, with occlusion the normals too."""
+        return (*self.needs, "true_normal_b") if self.occlusion else self.needs
+
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return pixels and flow (run, time, camera, feature, 2), disparity, known noise."""
-        exact, in_front = _shown(data, self.baseline_m)
+        exact, seen = _shown(data, self.baseline_m)
         noises = (self.pixel_noise, self.flow_noise_1_s, self.disparity_noise)
         sigma = np.repeat([noise or 0.0 for noise in noises], (4, 4, 1))
         errors = draws.normal(Stream.MEASUREMENT_NOISE, exact.shape[1:])
         rank = draws.uniform(Stream.CLUTTER, exact.shape[1:3]).argsort(-1).argsort(-1)
         measured = exact + sigma * (errors + self._outliers(exact.shape[1:], draws))
-        seen = in_front & (rank >= self.missing_per_frame)
+        seen = seen & (rank >= self.missing_per_frame)
+        if self.occlusion:
+            seen = seen & _facing(data, self.baseline_m)
         measured[~(seen & (clock.times >= self.from_s)[:, None])] = np.nan
         return self._named(measured, noises) | {"baseline": _each(self.baseline_m, measured)}
 
@@ -146,6 +155,20 @@ def _shown(data: Data, baseline: float) -> tuple[Array, BoolArray]:
     in_front = point[..., 1] > 0
     point[..., 1] = np.where(in_front, point[..., 1], 1.0)
     return stereo.measure(point, velocity, baseline), in_front
+
+
+def _facing(data: Data, baseline: float) -> BoolArray:
+    """Which features' surfaces face both cameras, (run, time, feature).
+
+    A feature that one camera alone sees cannot be matched. The target's axes stand for body axes,
+    the leader's for inertial ones.
+    """
+    points, normals = data["true_point_b"][:, None], data["true_normal_b"][:, None]
+    first, second = (
+        back_face_visible(points, normals, data["true_q_lt"], camera - data["true_position"])
+        for camera in baseline * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    )
+    return np.asarray(first & second)
 
 
 def _by_camera(rows: Array) -> Array:

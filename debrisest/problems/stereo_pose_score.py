@@ -11,22 +11,16 @@ from debrisest.problems.stereo_pose_chart import difference, robocentric
 from debrisest.problems.stereo_pose_data import state_of
 from debrisest.problems.stereo_pose_model import K, Q
 
-_TOLD = ("converged", "repairs", "reopened")
-"""What filters tell of whole runs, for the tables."""
-
 _MOVING = ("true_position", "true_velocity", "true_q_lt", "true_rate_l")
 
 
 def scores(data: Data, delay: int) -> Data:
     """Return the errors against the truth ``delay`` epochs later, as far as there is one."""
-    result: Data = {name: data[name] for name in _TOLD if name in data}
-    if data["nis_dof"].any():
-        result["nis"] = per_dimension(data["nis"], data["nis_dof"])
     if not all(name in data for name in _MOVING):
-        return result
+        return {}
     late = data | {name: _later(data[name], delay) for name in _MOVING}
     with np.errstate(invalid="ignore"):
-        return result | _errors(late) | _consistency(late)
+        return _errors(late) | _consistency(late)
 
 
 def _later(values: Array, epochs: int) -> Array:

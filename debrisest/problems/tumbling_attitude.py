@@ -16,14 +16,10 @@ from typing import Literal
 import numpy as np
 
 from debrisest.arrays import Array, Data
-from debrisest.assessment.attitude import attitude_errors, true_feature_attitude
-from debrisest.assessment.convergence import convergence_time
-from debrisest.assessment.principal_axes import best_relabeling
-from debrisest.assessment.statistics import per_dimension, window_mask
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
-from debrisest.dynamics.inertia import principal_axes
 from debrisest.filters.model import Model
+from debrisest.problems.tumbling_score import scores
 from debrisest.roles import Filtered, Keys, Positive, ProblemPart, Window
 
 Q_IB, Q_BF, RATE, MOMENTS = slice(0, 4), slice(4, 8), slice(8, 11), slice(11, 14)
@@ -34,9 +30,6 @@ ERROR_NAMES = tuple(
 )
 LEAST_MOMENT = 0.02
 """Sigma points of the moments, which have unit norm, are kept this far from zero."""
-
-CONVERGED = np.radians(0.5)
-"""The rate has converged once its error stays below this, rad/s."""
 
 
 def derivative(q: Array, rate: Array, ratio: Array) -> tuple[Array, Array]:
@@ -127,6 +120,7 @@ class Variances(Keys):
 class TumblingAttitude(ProblemPart):
     """The problem of this file, with its integrator and its noises (variances)."""
 
+    version = 2
     needs = ("q_if",)
     gives = ("model",)
     kind: Literal["tumbling_attitude"]
@@ -168,36 +162,4 @@ class TumblingAttitude(ProblemPart):
 
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors of attitude, rate and inertia in true principal axes, if known."""
-        result: Data = {"nis": per_dimension(data["nis"], data["nis_dof"])}
-        result["repairs"] = data["repairs"]
-        if "true_q_ib" not in data:
-            return result
-        moments, axes = principal_axes(data["true_inertia_b"])
-        rate = data["true_rate_b"] @ axes
-        inside = window_mask(data["time_s"], scored)
-        relabeling = best_relabeling(data["rate_b"][:, inside], rate[:, inside])
-        return (
-            result
-            | {"relabeling": relabeling}
-            | _attitude_errors(data)
-            | _rate_errors(data["rate_b"] @ np.swapaxes(relabeling, -1, -2) - rate, data["time_s"])
-            | _inertia_errors(data["moments_b"] @ np.abs(np.swapaxes(relabeling, -1, -2)), moments)
-        )
-
-
-def _attitude_errors(data: Data) -> Data:
-    estimated = quaternion.multiply(data["q_ib"], data["q_bf"])
-    pitch_error, angle = attitude_errors(estimated, true_feature_attitude(data))
-    return {"pitch": pitch_error, "attitude": angle}
-
-
-def _rate_errors(error: Array, times: Array) -> Data:
-    components = {f"rate_{axis + 1}": error[..., axis] for axis in range(3)}
-    norm = np.linalg.norm(error, axis=-1)
-    return components | {"rate": norm, "convergence_time": convergence_time(CONVERGED, norm, times)}
-
-
-def _inertia_errors(estimated: Array, moments: Array) -> Data:
-    true = moments / np.linalg.norm(moments, axis=-1, keepdims=True)
-    error = estimated - true[:, None]
-    return {f"inertia_{axis + 1}": error[..., axis] for axis in range(3)}
+        return scores(data, scored, data["covariance"][..., RATE, RATE])

@@ -2,12 +2,16 @@
 
 from collections.abc import Iterator, Mapping
 
+from debrisest.arrays import Data
 from debrisest.assessment.statistics import window_mask
 from debrisest.catalog import CATALOG, kind_of
+from debrisest.clock import Clock
+from debrisest.draws import Draws
 from debrisest.roles import Part
 from debrisest.scenario.document import KeyPath
 from debrisest.scenario.mistakes import allowed_names
-from debrisest.scenario.schema import Scenario, Tables, window_of
+from debrisest.scenario.schema import Scenario, Table, window_of
+from debrisest.vocabulary import VOCABULARY
 
 MOST_EPOCHS = 10_000_000
 RESERVED = ("plots", "tables.csv", "tables.md", "tables.tex")
@@ -24,7 +28,8 @@ def scenario_problems(scenario: Scenario) -> Found:
         return
     if abs(epochs - round(epochs)) > 1e-9 * epochs:
         yield ("duration_s",), f"must be a whole number of steps of {scenario.step_s:g} s"
-    yield from _parts_that_lack_data(scenario)
+    lacking = list(_parts_that_lack_data(scenario))
+    yield from lacking or _parts_that_refuse(scenario)
     yield from _windows(scenario)
 
 
@@ -38,7 +43,10 @@ def file_problems(cases: Mapping[str, Scenario]) -> Found:
             yield ("cases", name), "all cases of a scenario must have the same estimators"
         if scenario.tables != first.tables:
             yield ("cases", name, "tables"), "tables belong to the whole file, not to a case"
-    yield from _unknown_cases(first.tables, list(cases))
+    yield from _unknown_cases(first, list(cases))
+    for index, table in enumerate(first.tables.layout):
+        if table.stage == "simulate":
+            yield from _not_simulated(("tables", "layout", index, "quantities"), table, cases)
 
 
 def _parts_that_lack_data(scenario: Scenario) -> Found:
@@ -54,13 +62,13 @@ def _parts_that_lack_data(scenario: Scenario) -> Found:
 
 
 def _lacks(path: KeyPath, part: Part, given: set[str]) -> Found:
-    missing = [name for name in part.needs if name not in given]
+    missing = [name for name in part.needed if name not in given]
     if missing:
         givers = sorted(
             f"{role} {kind_of(giver)}"
             for role, parts in CATALOG.items()
             for giver in parts
-            if set(missing) & set(giver.gives)
+            if set(missing) & {*giver.gives, *giver.extends}
         )
         yield (
             path,
@@ -69,7 +77,22 @@ def _lacks(path: KeyPath, part: Part, given: set[str]) -> Found:
         )
     for name in sorted(set(part.gives) & given):
         yield path, f"{name} is given by an earlier part already; only one part may give it"
-    given.update(part.gives)
+    given.update(part.gives, part.extends)
+
+
+def _parts_that_refuse(scenario: Scenario) -> Found:
+    """Simulate one run of the first epochs, where a part wants it."""
+    parts = scenario.simulation
+    if not any(part.tried for part in parts.values()):
+        return
+    clock, draws = Clock(2 * scenario.step_s, scenario.step_s), Draws(scenario.seed, "", [0])
+    data: Data = {"time_s": clock.times}
+    for path, part in parts.items():
+        try:
+            data |= part.simulate_named(path.partition(".")[2], data, clock, draws)
+        except ValueError as error:
+            yield tuple(path.split(".", 1)), str(error)
+            return
 
 
 def _windows(scenario: Scenario) -> Found:
@@ -94,7 +117,24 @@ def _windows(scenario: Scenario) -> Found:
             yield path, f"{window} holds no epoch"
 
 
-def _unknown_cases(tables: Tables, cases: list[str]) -> Found:
+def _not_simulated(path: KeyPath, table: Table, cases: Mapping[str, Scenario]) -> Found:
+    parts = [part for scenario in cases.values() for part in scenario.simulation.values()]
+    given = {name for part in parts for name in (*part.gives, *part.extends)}
+    shown = {name for name in given if VOCABULARY[name].table_unit}
+    for name in table.quantities:
+        if name not in shown:
+            allowed = allowed_names(name, sorted(shown)) if shown else "nothing that a table shows"
+            yield path, f"no part of the simulation gives {name!r}; {allowed}"
+        elif VOCABULARY[name].axes not in (("run",), ("run", "time_s")):
+            yield path, f"{name} has components; a table shows a figure per run, or per epoch"
+
+
+def _unknown_cases(scenario: Scenario, cases: list[str]) -> Found:
+    tables = scenario.tables
+    for name, estimator in scenario.estimators.items():
+        for case in estimator.cases or []:
+            if case not in cases:
+                yield ("estimators", name, "cases"), _unknown(case, cases)
     for mean, members in tables.means.items():
         if mean in cases:
             yield ("tables", "means", mean), "a case has this name already; choose another"

@@ -49,6 +49,12 @@ class Case:
         scenario: Scenario = scenario_model().model_validate(self.document)
         return scenario
 
+    @property
+    def estimators(self) -> list[str]:
+        """Return the estimators that are used in this case."""
+        every = self.scenario.estimators.items()
+        return [name for name, one in every if one.cases is None or self.name in one.cases]
+
     def __getstate__(self) -> dict[str, Any]:
         return {key: value for key, value in self.__dict__.items() if key != "scenario"}
 

@@ -21,7 +21,7 @@ from debrisest.roles import (
     StartPart,
     Window,
 )
-from debrisest.vocabulary import VOCABULARY
+from debrisest.vocabulary import VOCABULARY, possible_units
 
 _NUMBER = r"(\d+(?:\.\d+)?)"
 _WINDOW = re.compile(f"^{_NUMBER}-{_NUMBER} s$")
@@ -78,15 +78,30 @@ class Divergence(Keys):
 
 
 class Table(Keys):
-    """Cells: every quantity by every statistic and window, for each case and estimator."""
+    """Cells: every quantity by every statistic and window, for each case and estimator.
+
+    What was simulated has no estimator.
+    """
 
     table: str = Field(description="the paper's number, or a short word")
     title: str
-    stage: Literal["recover", "filter"]
+    stage: Literal["simulate", "recover", "filter"]
     quantities: Annotated[list[QuantityName], Field(min_length=1)]
     statistics: Annotated[list[StatisticName], Field(min_length=1)]
     windows: Annotated[list[WindowText], Field(min_length=1)]
     cases: list[str] | None = Field(None, description="names of cases or means; default: all")
+    units: dict[QuantityName, str] = Field({}, description="quantity: another unit than its own")
+    count_diverged: bool = Field(False, description="let runs that diverged count as well")
+
+    @model_validator(mode="after")
+    def _known_units(self) -> "Table":
+        for name, unit in self.units.items():
+            allowed = possible_units(name)
+            if unit not in allowed:
+                raise ValueError(
+                    f"{name} cannot be shown in {unit!r}; allowed: {', '.join(allowed)}"
+                )
+        return self
 
 
 class Tables(Keys):
@@ -106,6 +121,7 @@ class Estimator(Keys):
     problem: ProblemPart | None = None
     start: StartPart | None = None
     filter: FilterPart | None = None
+    cases: list[str] | None = Field(None, description="where it is used; default: everywhere")
 
     @model_validator(mode="after")
     def _complete(self) -> "Estimator":
@@ -129,9 +145,9 @@ class Scenario(Keys):
     runs: Annotated[int, Field(ge=1)]
     duration_s: Positive
     step_s: Positive
-    target: SimulationPart
+    target: SimulationPart | None = None
     orbit: SimulationPart | None = None
-    motion: SimulationPart
+    motion: SimulationPart | None = None
     observers: dict[str, SimulationPart] = {}
     sensors: dict[str, SimulationPart]
     estimators: dict[_NAME, Estimator]
@@ -186,9 +202,9 @@ def scenario_model(base: type[Scenario] = Scenario) -> Any:
     return create(
         base.__name__,
         __base__=base,
-        target=(_kinds("target"), ...),
+        target=(_kinds("target") | None, None),
         orbit=(_kinds("orbit") | None, None),
-        motion=(_kinds("motion"), ...),
+        motion=(_kinds("motion") | None, None),
         observers=(_by_name(_kinds("observers")), {}),
         sensors=(_by_name(_kinds("sensors")), ...),
         estimators=(_by_name(estimator), ...),

@@ -2,10 +2,17 @@
 
 from typing import Any
 
+import numpy as np
+
 from debrisest.arrays import Data
+from debrisest.assessment.consistency import chart_free
+from debrisest.assessment.statistics import per_dimension
 from debrisest.scenario.load import Case
 
-VERSION = 1
+VERSION = 2
+
+_COUNTED = ("converged", "repairs", "reopened")
+"""What filters count over whole runs."""
 
 
 def inputs(case: Case, estimator: str) -> dict[str, Any]:
@@ -26,5 +33,21 @@ def run(case: Case, estimator: str, data: Data) -> Data:
     if chosen.recovery is not None:
         result |= chosen.recovery.assess(data)
     if chosen.problem is not None:
+        result |= told_by_filter(data)
         result |= chosen.problem.assess(data, case.scenario.scored)
+    return result
+
+
+def told_by_filter(data: Data) -> Data:
+    """Return what a filter says of itself, whatever the problem: consistency and counters."""
+    result: Data = {name: data[name] for name in _COUNTED if name in data}
+    used = data["nis_dof"]
+    if used.any():
+        result |= {"nis": per_dimension(data["nis"], used), "nis_dof": used}
+    if "rejected" in data:
+        result["rejected"] = per_dimension(data["rejected"], data["rejected"] + used)
+    if "cost_of_truth" in data:
+        errors = len(data["error_name"])
+        result["w"] = chart_free(data["cost_of_truth"], data["cost"], errors)
+        result["w_dof"] = np.where(np.isfinite(result["w"]), errors, 0)
     return result

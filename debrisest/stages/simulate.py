@@ -25,6 +25,7 @@ def run(case: Case, _: str, data: Data) -> Data:
     scenario = case.scenario
     draws = Draws(scenario.seed, case.name, data["run"].astype(int).tolist())
     result: Data = {"time_s": scenario.clock.times}
-    for part in scenario.simulation.values():
-        result |= part.simulate(result, scenario.clock, draws)
+    for path, part in scenario.simulation.items():
+        name = path.partition(".")[2]
+        result |= part.simulate_named(name, result, scenario.clock, draws)
     return result

@@ -9,18 +9,20 @@ import numpy as np
 import pandas as pd
 
 from debrisest.arrays import Array, BoolArray
+from debrisest.assessment.consistency import consistent_interval
 from debrisest.assessment.statistics import bootstrap
+from debrisest.plan import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.schema import Table, Tables
 from debrisest.tables.published import CellKey, Published, published_values
 from debrisest.tables.results import Result
-from debrisest.tables.verdict import Verdict, interval_meets, verdict
-from debrisest.vocabulary import VOCABULARY
+from debrisest.tables.verdict import Verdict, consistency, interval_meets, verdict
+from debrisest.vocabulary import VOCABULARY, table_scale
 
 COLUMNS = [
     *("table", "case", "estimator", "quantity", "unit", "statistic", "window"),
     *("published", "measured", "ci_low", "ci_high", "bound"),
-    *("runs", "failed", "diverged", "verdict"),
+    *("runs", "failed", "diverged", "verdict", "consistent_low", "consistent_high"),
 ]
 
 BOUND = "bound"
@@ -79,7 +81,8 @@ def _disagreement(row: Mapping[Hashable, Any], entry: Published, expected: list[
 def _keys(table: Table, scenario: LoadedScenario) -> Iterator[tuple[CellKey, str]]:
     names = table.cases or [*scenario.cases, *scenario.common.tables.means]
     columns = product(table.statistics, table.windows)
-    cells = product(names, scenario.common.estimators, table.quantities)
+    estimators = [SIMULATED] if table.stage == "simulate" else scenario.common.estimators
+    cells = product(names, estimators, table.quantities)
     for (statistic, window), (case, estimator, quantity) in product(columns, cells):
         yield CellKey(table.table, case, quantity, statistic, window), estimator
 
@@ -95,18 +98,26 @@ def _row(
     found = _measured(key, estimator, table, scenario, results)
     if found is None:
         return None
-    bound = _measured(key, _BOUNDS.get(estimator, BOUND), table, scenario, results)
-    value, factor = (published.value, published.factor) if published else (None, 1.0)
-    lost = (found["diverged"] + found["failed"]) / found["runs"]
+    bound = None
+    if estimator != SIMULATED:
+        bound = _measured(key, _BOUNDS.get(estimator, BOUND), table, scenario, results)
     return {
         **key._asdict(),
         "estimator": estimator,
-        "unit": VOCABULARY[_dataset(table, key.quantity)].table_unit,
-        "published": value,
+        "unit": _unit(table, key.quantity),
+        "published": published.value if published else None,
         **found,
         "bound": bound["measured"] if bound else np.nan,
-        "verdict": str(verdict(found["measured"], value, factor, lost)),
+        "verdict": str(_said(found, published)),
     }
+
+
+def _said(found: Mapping[str, Any], published: Published | None) -> Verdict:
+    lost = (found["diverged"] + found["failed"]) / found["runs"]
+    if published is None:
+        interval = found["consistent_low"], found["consistent_high"]
+        return consistency(found["measured"], *interval, lost)
+    return verdict(found["measured"], published.value, published.factor, lost)
 
 
 def _measured(
@@ -118,10 +129,15 @@ def _measured(
     present = [part for part in parts if part is not None and part.shows(dataset)]
     if not present or len(present) < len(parts):
         return None
+    freedom = [part.freedom(dataset, key.statistic, key.window) for part in present]
+    if not any(part.seen(dataset, key.window) for part in present):
+        return None
     groups = [_figures(part, key, table, tables) for part in present]
     kept = [figures[keep] for figures, keep, _ in groups]
+    free = [degrees[keep] for degrees, (_, keep, _) in zip(freedom, groups)]
     seed = zlib.crc32("|".join((*key, estimator)).encode())
     measured, low, high = (_rounded(x) for x in bootstrap(key.statistic, kept, seed))
+    consistent = [_rounded(x) for x in consistent_interval(key.statistic, free)]
     return {
         "measured": measured,
         "ci_low": low,
@@ -129,6 +145,8 @@ def _measured(
         "runs": sum(part.runs for part in present),
         "failed": sum(len(part.failures) for part in present),
         "diverged": sum(int(lost.sum()) for *_, lost in groups),
+        "consistent_low": consistent[0],
+        "consistent_high": consistent[1],
     }
 
 
@@ -138,6 +156,10 @@ def _dataset(table: Table, quantity: str) -> str:
     return recovered if table.stage == "recover" and recovered in VOCABULARY else quantity
 
 
+def _unit(table: Table, quantity: str) -> str:
+    return table.units.get(quantity) or VOCABULARY[_dataset(table, quantity)].table_unit
+
+
 def _figures(
     part: Result, key: CellKey, table: Table, tables: Tables
 ) -> tuple[Array, BoolArray, BoolArray]:
@@ -145,9 +167,11 @@ def _figures(
 
     The rules of divergence speak of a filter's result; a recovery counts unless it is not finite.
     """
-    figures = part.figures(_dataset(table, key.quantity), key.statistic, key.window)
+    dataset = _dataset(table, key.quantity)
+    figures = part.figures(dataset, key.statistic, key.window)
+    figures = figures * (table_scale(dataset, _unit(table, key.quantity)) / table_scale(dataset))
     lost = part.good & ~np.isfinite(figures)
-    if table.stage == "filter":
+    if table.stage == "filter" and not table.count_diverged:
         lost |= part.diverged(tables.diverged)
     return figures, part.good & ~lost, lost
 

@@ -5,10 +5,16 @@ from typing import NamedTuple
 
 import pandas as pd
 
+from debrisest.plan import SIMULATED
 from debrisest.scenario.load import LoadedScenario
-from debrisest.tables.verdict import SYMBOLS, Verdict
+from debrisest.tables.verdict import CONSISTENCY, SYMBOLS, Verdict
 
 PAPER = "paper"
+_SHOWN = {SIMULATED: "simulated"}
+"""Sources that are called otherwise in a laid-out table."""
+
+_WORDS = {"unobservable_ratios": " of 5 unobservable"}
+"""What follows the figure of a quantity."""
 
 
 class Sheet(NamedTuple):
@@ -40,17 +46,17 @@ def sheets(scenario: LoadedScenario, cells: pd.DataFrame) -> list[Sheet]:
 
 
 def _grid(cells: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
-    """Sources side by side for a single quantity, one below the other for several."""
+    """Sources side by side for a single quantity, one below the other for several or for words."""
     names, sources = list(dict.fromkeys(cells["quantity"])), _sources(cells)
     by_case = list(cells.groupby("case", sort=False))
-    if len(names) == 1:
+    if len(names) == 1 and not cells["verdict"].isin(CONSISTENCY).any():
         rows = [
             [str(case), *(_text(part, source, names[0]) for source in sources)]
             for case, part in by_case
         ]
-        return ["case", *sources], rows
+        return ["case", *(_SHOWN.get(source, source) for source in sources)], rows
     rows = [
-        [str(case), source, *(_text(part, source, name) for name in names)]
+        [str(case), _SHOWN.get(source, source), *(_text(part, source, name) for name in names)]
         for case, part in by_case
         for source in sources
     ]
@@ -69,7 +75,7 @@ def _sources(cells: pd.DataFrame) -> list[str]:
 
 
 def _text(part: pd.DataFrame, source: str, quantity: str) -> str:
-    """Return a figure of three digits, its verdict's symbol, and before it the runs left out."""
+    """Return a figure of three digits, its verdict's sign, and before it the runs left out."""
     part = part[part["quantity"] == quantity]
     if source == PAPER:
         published = part["published"].dropna()
@@ -78,7 +84,7 @@ def _text(part: pd.DataFrame, source: str, quantity: str) -> str:
     if own.empty:
         return ""
     measured, verdict = own["measured"].iloc[0], own["verdict"].iloc[0]
-    figure = f"{measured:.3g}" if pd.notna(measured) else "-"
+    figure = f"{measured:.3g}{_WORDS.get(quantity, '')}" if pd.notna(measured) else "-"
     lost = int(own["failed"].iloc[0] + own["diverged"].iloc[0])
     note = f"({lost}) " if lost else ""
     return f"{note}{figure} {SYMBOLS[Verdict(verdict)]}".rstrip()

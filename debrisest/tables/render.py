@@ -10,9 +10,17 @@ from rich.table import Table
 
 from debrisest.scenario.load import LoadedScenario
 from debrisest.tables.layout import Sheet, sheets
-from debrisest.tables.verdict import LEGEND
+from debrisest.tables.verdict import CONSISTENCY, LEGEND, LEGEND_OF_CONSISTENCY
 
-_COLOURS = {"=": "green", "<": "cyan", ">": "red", "x": "magenta"}
+_COLOURS = {
+    "=": "green",
+    "<": "cyan",
+    ">": "red",
+    "x": "magenta",
+    "consistent": "green",
+    "over-cautious": "cyan",
+    "over-confident": "red",
+}
 
 
 def render(scenario: LoadedScenario, cells: pd.DataFrame, form: str) -> str:
@@ -39,8 +47,7 @@ def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
 
 
 def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    legend = LEGEND if cells["published"].notna().any() else ""
-    parts = [f"# {scenario.common.title}", scenario.common.source, legend]
+    parts = [f"# {scenario.common.title}", scenario.common.source, *_legends(cells)]
     for sheet in sheets(scenario, cells):
         lines = [sheet.heads, ["---"] * len(sheet.heads), *sheet.rows]
         escaped = [[text.replace("|", "\\|") for text in line] for line in lines]
@@ -49,8 +56,16 @@ def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
+def _legends(cells: pd.DataFrame) -> list[str]:
+    """Return what explains the signs and the words of these cells."""
+    signs = [LEGEND] if cells["published"].notna().any() else []
+    words = [LEGEND_OF_CONSISTENCY] if cells["verdict"].isin(CONSISTENCY).any() else []
+    return signs + words
+
+
 def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    parts = [f"% {scenario.common.title}\n% {LEGEND}"]
+    legend = "; ".join(_legends(cells) or [LEGEND])
+    parts = [f"% {scenario.common.title}\n% {legend}"]
     for sheet in sheets(scenario, cells):
         head, *rows = (
             " & ".join(_escaped(text) for text in line) + r" \\"
@@ -58,7 +73,7 @@ def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
         )
         parts.append(
             "\\begin{table}\n"
-            f"\\caption{{{_escaped(f'Table {sheet.number}: {sheet.title}. {LEGEND}')}}}\n"
+            f"\\caption{{{_escaped(f'Table {sheet.number}: {sheet.title}. {legend}')}}}\n"
             f"\\begin{{tabular}}{{{'l' * len(sheet.heads)}}}\n\\hline\n{head}\n\\hline\n"
             + "\n".join(rows)
             + "\n\\hline\n\\end{tabular}\n\\end{table}"
@@ -80,8 +95,8 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
             title = escape(f"Table {sheet.number}: {sheet.title}")
             console.print(f"\n[bold]{title}[/]", soft_wrap=True)
             console.print(_rich_table(sheet))
-        if cells["published"].notna().any():
-            console.print(f"{LEGEND}\n", style="dim", soft_wrap=True)
+        for text in _legends(cells):
+            console.print(f"{text}\n", style="dim", soft_wrap=True)
     return capture.get()
 
 
@@ -98,7 +113,7 @@ def _rich_table(sheet: Sheet) -> Table:
 
 
 def _coloured(text: str) -> str:
-    colour = _COLOURS.get(text[-1:]) if " " in text else None
+    colour = _COLOURS.get(text.rpartition(" ")[2]) if " " in text else None
     return f"[{colour}]{escape(text)}[/]" if colour else escape(text)
 
 

@@ -1,4 +1,4 @@
-"""Verdicts: how a measured figure stands to a published one."""
+"""Verdicts: how a measured figure stands to a published one, or to its own covariance."""
 
 from enum import StrEnum
 
@@ -6,25 +6,34 @@ import numpy as np
 
 
 class Verdict(StrEnum):
-    """What is said of a cell."""
+    """What is said of a cell: beside a published value, or of a consistency without one."""
 
     REPRODUCED = "reproduced"
     BETTER = "better"
     WORSE = "worse"
     NOT_REPRODUCED = "not reproduced"
     UNPUBLISHED = "unpublished"
+    CONSISTENT = "consistent"
+    OVER_CONFIDENT = "over-confident"
+    OVER_CAUTIOUS = "over-cautious"
 
 
+CONSISTENCY = (Verdict.CONSISTENT, Verdict.OVER_CONFIDENT, Verdict.OVER_CAUTIOUS)
 SYMBOLS = {
     Verdict.REPRODUCED: "=",
     Verdict.BETTER: "<",
     Verdict.WORSE: ">",
     Verdict.NOT_REPRODUCED: "x",
     Verdict.UNPUBLISHED: "",
+    **{said: str(said) for said in CONSISTENCY},
 }
 LEGEND = (
     "= reproduced, < better, > worse than published, x not reproduced (most runs were lost); "
     "(n) runs that diverged or failed, left out"
+)
+LEGEND_OF_CONSISTENCY = (
+    "consistent: within the 95 % chi-square interval of the runs used; over-confident: above it, "
+    "the errors are larger than the covariance says; over-cautious: below it"
 )
 
 
@@ -37,6 +46,19 @@ def verdict(measured: float, published: float | None, factor: float, lost: float
     if measured < published / factor:
         return Verdict.BETTER
     return Verdict.WORSE if measured > published * factor else Verdict.REPRODUCED
+
+
+def consistency(measured: float, low: float, high: float, lost: float) -> Verdict:
+    """Return the verdict on a normalised square per dimension, ``low`` to ``high`` if consistent.
+
+    Without a figure, or an interval to judge it by, there is nothing to say, nor is there of an
+    estimator that lost most of its runs, of which those that are left are no sample.
+    """
+    if lost > 0.5 or not np.isfinite([measured, low, high]).all():
+        return Verdict.UNPUBLISHED
+    if measured > high:
+        return Verdict.OVER_CONFIDENT
+    return Verdict.OVER_CAUTIOUS if measured < low else Verdict.CONSISTENT
 
 
 def interval_meets(

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from debrisest.assessment.consistency import chart_free, interval, normalized_square, verdict
+from debrisest.assessment.consistency import (
+    chart_free,
+    consistent_interval,
+    freedom_of_runs,
+    interval,
+    normalized_square,
+    pooled,
+)
 
 
 def draws(seed, runs=3000, scale=1.0):
@@ -20,14 +27,13 @@ def test_squares_follow_the_chi_square_distribution():
         assert np.mean(squares < chi2.ppf(share, 5)) == pytest.approx(share, abs=0.03)
 
 
-@pytest.mark.parametrize(
-    ("scale", "word"), [(1.0, "consistent"), (1.3, "over-confident"), (0.8, "over-cautious")]
-)
-def test_verdicts(scale, word):
-    judged = verdict(normalized_square(*draws(1, scale=scale)), 5, 0.9999)
-    assert judged.words.startswith(word)
-    assert judged.mean == pytest.approx(scale**2, rel=0.07)
-    assert judged.low < 1 < judged.high
+@pytest.mark.parametrize(("scale", "side"), [(1.0, 0), (1.3, 1), (0.8, -1)])
+@pytest.mark.parametrize("statistic", ["mean", "median"])
+def test_errors_of_the_wrong_size_lie_outside(scale, side, statistic):
+    per_dimension = normalized_square(*draws(1, scale=scale)) / 5
+    low, high = consistent_interval(statistic, [np.full(3000, 5.0)], 0.9999)
+    figure = {"mean": np.mean, "median": np.median}[statistic](per_dimension)
+    assert np.sign(int(figure > high) - int(figure < low)) == side
 
 
 def test_the_interval_covers_what_it_promises():
@@ -44,10 +50,63 @@ def test_what_is_missing_does_not_count():
     spoilt[4, 0, 0] = np.nan
     squares = normalized_square(error, spoilt)
     np.testing.assert_array_equal(np.isnan(squares), [0, 0, 1, 0, 1, 0])
-    assert verdict(squares, 5).mean == pytest.approx(np.nanmean(squares) / 5)
-    assert verdict(np.full(3, np.nan), 5).words.startswith("unknown")
-    counts = np.array([5, 0, 5, 5, 5, 5])
-    assert verdict(squares, counts).mean == pytest.approx(np.nansum(squares[[0, 3, 5]]) / 15)
+
+
+def coverage(statistic, freedom, trials=4000, seed=5):
+    """Share of trials in which a statistic of chi-squares lies in its interval."""
+    squares = np.random.default_rng(seed).chisquare(freedom, (trials, len(freedom))) / freedom
+    low, high = consistent_interval(statistic, [freedom])
+    over_runs = {"mean": np.mean, "median": np.median, "p50": np.median}[statistic]
+    figures = over_runs(squares, axis=-1)
+    return np.mean((figures > low) & (figures < high))
+
+
+@pytest.mark.parametrize("statistic", ["mean", "median", "p50"])
+@pytest.mark.parametrize("runs", [1, 9, 20, 101])
+def test_the_interval_of_a_statistic_covers_what_it_promises(statistic, runs):
+    assert coverage(statistic, np.full(runs, 29.0)) == pytest.approx(0.95, abs=0.02)
+
+
+@pytest.mark.parametrize("statistic", ["mean", "median"])
+def test_runs_may_differ_in_their_freedom(statistic):
+    freedom = np.random.default_rng(6).integers(20, 45, 40).astype(float)
+    assert coverage(statistic, freedom) == pytest.approx(0.95, abs=0.02)
+
+
+def test_a_mean_over_cases_has_a_narrower_interval():
+    one = consistent_interval("mean", [np.full(10, 4.0)])
+    assert consistent_interval("mean", [np.full(10, 4.0)] * 9) == consistent_interval(
+        "mean", [np.full(90, 4.0)]
+    )
+    assert one[0] < consistent_interval("mean", [np.full(10, 4.0)] * 9)[0]
+
+
+@pytest.mark.parametrize("statistic", ["p90", "p100", "rms", "share"])
+def test_other_statistics_are_not_judged(statistic):
+    assert np.isnan(consistent_interval(statistic, [np.full(10, 4.0)])).all()
+
+
+@pytest.mark.parametrize("groups", [[], [np.zeros(0)], [np.array([4.0, 0.0])]])
+def test_without_freedom_there_is_no_interval(groups):
+    assert np.isnan(consistent_interval("mean", groups)).all()
+
+
+def test_freedom_adds_up_over_independent_epochs_only():
+    freedom = np.array([[4.0, 0.0, 4.0, 4.0], [0.0, 0.0, 7.0, 0.0], [0.0, 0.0, 0.0, 0.0]])
+    assert freedom_of_runs("mean", freedom, white=True) == pytest.approx([12, 7, 0])
+    assert freedom_of_runs("mean", freedom, white=False) == pytest.approx([4, 7, 0])
+    assert freedom_of_runs("median", freedom, white=True) == pytest.approx([0, 7, 0])
+    assert pooled(np.array([3.0, 3.0])) == pytest.approx(6)
+
+
+def test_a_span_of_one_repeated_error_is_not_taken_for_many():
+    """Errors that stay what they are: the mean over 50 epochs is that of one."""
+    squares = np.random.default_rng(7).chisquare(6, (4000, 10)).mean(-1) / 6
+    for white, expected in ((False, 0.95), (True, 0.3)):
+        runs = freedom_of_runs("mean", np.full((10, 50), 6.0), white)
+        low, high = consistent_interval("mean", [runs])
+        share = np.mean((squares > low) & (squares < high))
+        assert share == pytest.approx(expected, abs=0.02) if not white else share < expected
 
 
 def test_chart_free_statistic_of_a_linear_estimate():

@@ -191,3 +191,57 @@ def test_wrong_shapes_are_refused():
         replay(linear_model(), prior, covariance, measured, ratio=0.5)
     with pytest.raises(ValueError, match="kept epochs"):
         replay(linear_model(), prior, covariance, measured, keep=[EPOCHS])
+
+
+# costs
+
+
+def rows_of(k):
+    """What is least in a least squares fit of the state at epoch 0 to the epochs up to k."""
+    root = np.linalg.inv(np.linalg.cholesky(COVARIANCE))
+    return np.concatenate([root, *(H @ power(i) / SIGMA[:, None] for i in range(k + 1))]), root
+
+
+def test_costs_are_those_of_the_least_squares_problem():
+    """Of the estimate, which is its solution, and of any motion beside it."""
+    prior, covariance, measured, truth = data(3)
+    beside = truth
+    options = {"ratio": 2.0, "keep": [3, 7], "beside": beside}
+    found = replay(linear_model(), prior, covariance, measured, **options)
+    final = smooth(linear_model(), prior, covariance, measured, found, beside=beside)
+    for k, estimates in ((3, found), (7, found), (EPOCHS - 1, found), (EPOCHS - 1, final)):
+        rows, root = rows_of(k)
+        for run in range(RUNS):
+            right = np.concatenate([root @ prior[run], (measured[run, : k + 1] / SIGMA).ravel()])
+            _, least, *_ = np.linalg.lstsq(rows, right)
+            assert estimates.cost[run, k] == pytest.approx(least.item(), rel=1e-9)
+            other = np.sum((rows @ beside[run] - right) ** 2)
+            assert estimates.cost_beside[run, k] == pytest.approx(other, rel=1e-9)
+    assert np.isnan(np.delete(found.cost_beside, [3, 7, EPOCHS - 1], axis=1)).all()
+
+
+def test_no_estimate_depends_on_the_motion_beside_it():
+    prior, covariance, measured, truth = data(4)
+    measured[1, 5] = 300.0
+    for gate in (False, True):
+        alone = replay(linear_model(), prior, covariance, measured, gate=gate, keep=[4])
+        other = replay(
+            linear_model(), prior, covariance, measured, gate=gate, keep=[4], beside=truth
+        )
+        for name in ("state", "sigma", "covariance", "nis", "cost"):
+            np.testing.assert_array_equal(getattr(alone, name), getattr(other, name))
+        assert np.isnan(alone.cost_beside).all()
+
+
+def test_what_the_gate_rejects_counts_in_neither_cost():
+    """An outlier in both costs would not move their difference; in one, by thousands."""
+    prior, covariance, measured, truth = data(5)
+    clean = replay(linear_model(), prior, covariance, measured, gate=True, beside=truth)
+    wild = measured.copy()
+    wild[:, 6, 0] += 200 * SIGMA[0]
+    gated = replay(linear_model(), prior, covariance, wild, gate=True, beside=truth)
+    for estimates in (clean, gated):
+        assert estimates.cost[:, -1].max() < 200
+        excess = estimates.cost_beside[:, -1] - estimates.cost[:, -1]
+        assert excess.min() > -1e-6
+        assert excess.max() < 40

@@ -17,6 +17,15 @@ def test_points_fill_the_box_evenly(simulated: Callable) -> None:
     assert points.std(0) == pytest.approx([1.5 / np.sqrt(3)] * 3, rel=0.08)
 
 
+def test_a_normal_leads_out_of_the_box_on_the_shortest_way(simulated: Callable) -> None:
+    data = simulated(runs=50, duration=2.0)
+    points, normals = data["true_point_b"], data["true_normal_b"]
+    ways = np.concatenate([np.eye(3), -np.eye(3)])
+    length = 1.5 - points @ ways.T
+    assert np.array_equal(normals, ways[length.argmin(-1)])
+    assert (normals.reshape(-1, 3).min(0) == -1).all() and (normals.max((0, 1)) == 1).all()
+
+
 def test_a_run_does_not_depend_on_its_companions(simulated: Callable) -> None:
     together, alone = simulated(runs=4), simulated(runs=1, first=2)
     assert np.array_equal(together["true_point_b"][2], alone["true_point_b"][0])

@@ -1,20 +1,28 @@
 """What the two cameras, the acceleration and the first guess of a leader give."""
 
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from scipy.spatial.transform import Rotation
 
 from debrisest.attitude import quaternion
+from debrisest.parts.leader_motion import SeenFromLeader
+from debrisest.parts.orbits import KeplerOrbit
+from debrisest.parts.random_target import RandomPoints
 from debrisest.parts.stereo_sensors import AngularAcceleration, FirstGuess, StereoCamera
+from debrisest.roles import SimulationPart
+from debrisest.scenario.checks import scenario_problems
+from debrisest.scenario.schema import Scenario
 
 TINY, STEP = 1e-14, 0.01
 
 
 def camera(**keys) -> StereoCamera:
     given = {"pixel_noise": TINY, "flow_noise_1_s": TINY, "disparity_noise": TINY, "from_s": 0.0}
-    return StereoCamera(kind="stereo_camera", baseline_m=1.0, **(given | keys))
+    return StereoCamera(kind="stereo_camera", **({"baseline_m": 1.0} | given | keys))
 
 
 def guess() -> FirstGuess:
@@ -73,6 +81,93 @@ def test_missing_features_and_the_time_before_the_first(simulated: Callable) -> 
     assert hidden[:, 3:].mean((0, 1)) == pytest.approx([0.4] * 5, abs=0.17)
     assert np.array_equal(np.isnan(data["measured_pixel"]).all((2, 4)), hidden)
     assert np.array_equal(np.isnan(data["measured_flow"]).any((2, 4)), hidden)
+
+
+class Box:
+    """Puts the features on the faces of a cube; the cameras then stand nearer to it."""
+
+    half, nearer = 1.5, 0.1
+
+    def simulate(self, data, clock, draws):
+        points, normals = data["true_point_b"], data["true_normal_b"]
+        points = np.where(normals != 0, self.half * normals, points)
+        return {"true_point_b": points, "true_position": self.nearer * data["true_position"]}
+
+
+def inside(point, cube):
+    return np.abs(point).max(-1) < cube
+
+
+def test_occlusion_hides_what_lies_behind_the_body(simulated: Callable) -> None:
+    """A feature of a box is hidden where the way to either camera begins inside the box."""
+    turning = {"rate": [30.0, -20.0, 10.0], "runs": 20, "first": 3}
+    parts = Box(), camera(occlusion=True, baseline_m=4.0)
+    data = simulated(*parts, **turning)
+    hidden = np.isnan(data["measured_disparity"])
+    point, expected = data["true_point_b"][:, None], np.zeros_like(hidden)
+    axes = Rotation.from_quat(data["true_q_lt"].reshape(-1, 4), scalar_first=True)
+    for place in ([0.0, 0.0, 0.0], [4.0, 0.0, 0.0]):
+        camera_t = axes.inv().apply((place - data["true_position"]).reshape(-1, 3))
+        way = camera_t.reshape(data["true_position"].shape)[:, :, None] - point
+        expected |= inside(point + 1e-6 * way, Box.half)
+    assert np.array_equal(hidden, expected)
+    assert 0.3 < hidden.mean() < 0.8
+    assert (hidden.any(1) & ~hidden.all(1)).any()
+    open_ = simulated(Box(), camera(baseline_m=4.0), **turning)
+    for name in ("measured_pixel", "measured_flow", "measured_disparity"):
+        seen = ~np.isnan(data[name])
+        assert np.array_equal(data[name][seen], open_[name][seen])
+    assert not np.isnan(open_["measured_disparity"]).any()
+
+
+def test_missing_features_come_on_top_of_hidden_ones(simulated: Callable) -> None:
+    def hidden(**keys):
+        return np.isnan(simulated(camera(**keys), runs=10)["measured_disparity"])
+
+    both = hidden(occlusion=True, missing_per_frame=2)
+    assert np.array_equal(both, hidden(occlusion=True) | hidden(missing_per_frame=2))
+
+
+class Bare(SimulationPart):
+    """A target whose surface nobody knows."""
+
+    gives = ("true_point_b", "true_inertia_ratio")
+    kind: Literal["bare"] = "bare"
+
+    def simulate(self, data, clock, draws):
+        raise NotImplementedError
+
+
+@pytest.mark.parametrize("occlusion", [False, True])
+@pytest.mark.parametrize("bare", [False, True])
+def test_occlusion_needs_normals(occlusion: bool, bare: bool) -> None:
+    drawn = RandomPoints(
+        kind="random_points", count=5, half_size_m=1.5, inertia_ratios=[-0.186, -0.0797]
+    )
+    motion = SeenFromLeader(
+        kind="seen_from_leader",
+        position_m=[10.0, 60.0, 10.0],
+        velocity_m_s=[0.0, 0.0, 0.0],
+        rate_deg_s=[0.0, 0.0, 0.0],
+    )
+    scenario = Scenario(
+        title="occlusion",
+        seed=1,
+        runs=1,
+        duration_s=10.0,
+        step_s=1.0,
+        target=Bare() if bare else drawn,
+        orbit=KeplerOrbit(kind="kepler", semi_major_axis_km=7170.0),
+        motion=motion,
+        sensors={"cameras": camera(occlusion=occlusion)},
+        estimators={},
+    )
+    problems = list(scenario_problems(scenario))
+    assert len(problems) == (occlusion and bare)
+    for path, message in problems:
+        assert path == ("sensors", "cameras")
+        assert "stereo_camera needs true_normal_b, which no part before it gives" in message
+        assert "target random_points" in message
 
 
 def test_outliers_come_with_their_share_and_size(simulated: Callable) -> None:

@@ -1,12 +1,17 @@
-"""The stereo pose experiment, over a few seconds."""
+"""The stereo pose experiment, over a few seconds, and a tumbling body by integration."""
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+from scipy.spatial.transform import Rotation
 
 from debrisest.filters.replay import replay
 from debrisest.problems import stereo_pose_model as stereo_pose
+from debrisest.problems import tumbling_points_motion as body
 from debrisest.problems.stereo_pose_replay import replay_model
 from debrisest.problems.stereo_pose_truth import draw_guess, simulate_truth
+from debrisest.problems.tumbling_points_inertia import log_tensor
 
 ORBIT = (7.17e6, 0.05, 0.0)
 POINTS = 5
@@ -46,3 +51,47 @@ class Experiment:
 @pytest.fixture(scope="session")
 def experiment():
     return Experiment
+
+
+def _integrated(states, times):
+    """Attitudes (run, time, 3, 3) and rates (run, time, 3) by integrating ``R' = R [w]``."""
+    inertia = np.array([expm(log_tensor(state[body.LOG_INERTIA])) for state in states])
+    inverse, runs = np.linalg.inv(inertia), len(states)
+
+    def change(_, x):
+        turn, w = x[: 9 * runs].reshape(runs, 3, 3), x[9 * runs :].reshape(runs, 3)
+        momentum = (inertia @ w[..., None])[..., 0]
+        faster = inverse @ np.cross(momentum, w)[..., None]
+        return np.concatenate([np.cross(turn, w[:, None]).ravel(), faster.ravel()])
+
+    first = Rotation.from_quat(states[:, body.Q], scalar_first=True).as_matrix()
+    start = np.concatenate([first.ravel(), states[:, body.RATE].ravel()])
+    found = solve_ivp(change, times[[0, -1]], start, "DOP853", times, rtol=1e-11, atol=1e-13)
+    matrix, rate = np.split(found.y.T, [9 * runs], axis=1)
+    return (
+        np.moveaxis(matrix.reshape(-1, runs, 3, 3), 1, 0),
+        np.moveaxis(rate.reshape(-1, runs, 3), 1, 0),
+    )
+
+
+def _nudged(state, index, step):
+    """One state with one of the eleven errors, as their names say."""
+    moved = state.copy()
+    if index < 3:
+        turn = Rotation.from_rotvec(step * np.eye(3)[index])
+        moved[:4] = (turn * Rotation.from_quat(state[:4], scalar_first=True)).as_quat(
+            scalar_first=True
+        )
+    else:
+        moved[index + 1] += step
+    return moved
+
+
+@pytest.fixture(scope="session")
+def integrated():
+    return _integrated
+
+
+@pytest.fixture(scope="session")
+def nudged():
+    return _nudged

@@ -9,6 +9,7 @@ from debrisest.filters.evidence import linearize, weigh
 from debrisest.filters.gauss_newton import move
 from debrisest.filters.replay import replay, smooth
 from debrisest.filters.replay_estimates import ReplayStatus
+from debrisest.problems import stereo_pose_model as stereo_pose
 from debrisest.problems.stereo_pose_replay import replay_model
 
 POINTS = 5
@@ -70,6 +71,20 @@ def test_a_missing_row_is_a_row_left_out(experiment):
     gap = np.abs(whole.state[:, -1, :9] - part.state[:, -1, :9])
     assert np.all(gap < 0.05 * sigma_of_part)
     np.testing.assert_allclose(whole.sigma[:, -1, :9], sigma_of_part, rtol=0.02)
+
+
+@pytest.mark.parametrize("gate", [False, True])
+def test_rows_that_are_never_measured_are_rows_left_out(experiment, gate):
+    """Pixels alone, once by a model without the other rows, once with NaN in their places."""
+    pixels = stereo_pose.Shown(flow=False, disparity=False)
+    whole, part = experiment(2, 7, 10), experiment(2, 7, 10, shown=pixels)
+    rows = whole.measured.reshape(2, 7, POINTS, 9)
+    part.measured = rows[..., :4].reshape(2, 7, -1).copy()
+    rows[..., 4:] = np.nan
+    masked, dropped = whole.estimate(gate=gate), part.estimate(gate=gate)
+    assert np.abs((masked.state - dropped.state)[..., :9] / dropped.sigma[..., :9]).max() < 1e-5
+    np.testing.assert_allclose(masked.sigma, dropped.sigma, rtol=1e-6)
+    np.testing.assert_array_equal(masked.nis_dof, dropped.nis_dof)
 
 
 def test_outliers_are_kept_out_by_the_gate_only(experiment):

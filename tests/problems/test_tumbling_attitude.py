@@ -10,7 +10,10 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from debrisest.assessment.principal_axes import RELABELINGS
+from debrisest.clock import Clock
+from debrisest.parts.filters import Unscented
 from debrisest.problems import tumbling_attitude as problem
+from debrisest.roles import Given
 
 BODIES = {
     "tumbling": ([0.618, 0.707, 0.345], [0.126, 0.096, -0.028]),
@@ -241,6 +244,9 @@ def test_a_correction_keeps_the_norms(seed: int) -> None:
 
 # assessment
 
+COVARIANCE = [1e-6, 4e-6, 2e-6]
+"""Of the rate, in the axes of the estimate."""
+
 
 def estimate(turn: np.ndarray, moments: np.ndarray, offset: np.ndarray) -> dict[str, np.ndarray]:
     """A perfect estimate in relabeled axes, but for an offset of the rate."""
@@ -261,11 +267,10 @@ def estimate(turn: np.ndarray, moments: np.ndarray, offset: np.ndarray) -> dict[
         "q_bf": np.tile((to_body * frame).as_quat(scalar_first=True), (30, 1)),
         "rate_b": (rate + offset) @ turn.T,
         "moments_b": np.tile(np.abs(turn) @ unit(moments), (30, 1)),
-        "nis": np.full(30, 8.0),
-        "nis_dof": np.full(30, 4.0),
-        "repairs": np.zeros(1),
+        "covariance": np.tile(np.diag([9.0] * 8 + COVARIANCE + [9.0] * 3), (2, 1, 1)),
     }
-    return {name: value[None] for name, value in runs.items()} | {"time_s": times}
+    kept = {"time_s": times, "covariance_time_s": times[[20, 29]]}
+    return {name: value[None] for name, value in runs.items()} | kept
 
 
 MODEL = problem.TumblingAttitude.model_construct()
@@ -284,13 +289,31 @@ def test_a_perfect_estimate_has_no_error_in_whatever_axes(index: int) -> None:
     assert errors["attitude"].max() < 1e-6
     assert np.abs(errors["pitch"]).max() < 1e-6
     assert (errors["convergence_time"] == 0).all()
-    assert (errors["nis"] == 2).all()
+    in_own_axes = RELABELINGS[index] @ offset
+    assert errors["nees"][0, [20, 29]] == pytest.approx(np.mean(in_own_axes**2 / COVARIANCE))
+    assert np.isnan(errors["nees"][0, :20]).all()
+    assert errors["nees_dof"][0].tolist() == [3 * (k in (20, 29)) for k in range(30)]
 
 
-def test_without_truth_only_consistency_is_left() -> None:
+def test_without_truth_there_are_no_errors() -> None:
     data = estimate(np.eye(3), np.array([0.7, 0.5, 0.3]), np.zeros(3))
     seen = {name: value for name, value in data.items() if not name.startswith("true_")}
-    assert set(MODEL.assess(seen, (10.0, 30.0))) == {"nis", "repairs"}
+    assert not MODEL.assess(seen, (10.0, 30.0))
+
+
+def test_the_covariances_that_nees_needs_are_kept() -> None:
+    clock, state = Clock(10.0, 0.5), state_of(*BODIES["slender"])[None]
+    noise = problem.Variances(q_ib=1e-6, q_bf=1e-6, rate_rad2_s2=1e-6, moments=1e-6)
+    model = problem.TumblingAttitude(
+        kind="tumbling_attitude", integrator="rk4", process_noise=noise, measurement_noise=1e-2
+    ).model({}, clock)
+    measured = np.broadcast_to(problem.measured_attitude(state)[:, None], (1, 20, 4))
+    given_ = Given(state, noise.diagonal()[None], measured, clock)
+    found = Unscented(kind="unscented", keep_s=[7.2, 3.0]).run(model, given_)
+    assert found.kept.tolist() == [6, 14, 19]
+    for slot, epoch in enumerate(found.kept):
+        variance = np.diagonal(found.covariance[0, slot])
+        assert variance == pytest.approx(found.sigma[0, epoch] ** 2)
 
 
 @pytest.mark.parametrize("field", ["q_ib", "q_bf", "rate_rad2_s2", "moments"])

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import chi2
 
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.tables.cells import cells, unexpected
@@ -19,7 +20,7 @@ from debrisest.tables.results import Result
 
 HEADER = (
     "table,case,estimator,quantity,unit,statistic,window,published,measured,ci_low,ci_high,bound,"
-    "runs,failed,diverged,verdict"
+    "runs,failed,diverged,verdict,consistent_low,consistent_high"
 )
 TIMES = np.arange(60.0)
 DEG = np.pi / 180
@@ -180,7 +181,7 @@ def test_when_all_diverged_there_is_no_figure(scenario: LoadedScenario) -> None:
     assert np.isnan([rate["measured"], rate["ci_low"], rate["ci_high"]]).all()
     assert (rate["verdict"], rate["diverged"]) == ("not reproduced", 2)
     line = render(scenario, rows, "csv").splitlines()[2]
-    assert line == "2,fast,triad,rate_1,deg/s,rmse,40-60 s,0.001,,,,,2,0,2,not reproduced"
+    assert line == "2,fast,triad,rate_1,deg/s,rmse,40-60 s,0.001,,,,,2,0,2,not reproduced,,"
 
 
 # expected verdicts
@@ -262,6 +263,84 @@ def test_a_selection_of_what_is_shown_leaves_the_file_whole(
     assert {(row["case"], row["estimator"]) for row in rows} == {("slow", "wahba")}
     whole = (reference / "small" / "tables.csv").read_bytes()
     assert (swept / "small" / "tables.csv").read_bytes() == whole
+
+
+# consistency
+
+
+def judged(
+    nis: list[float], freedom: float = 50.0, rate: list[float] | None = None, spoilt: int = 0
+) -> Result:
+    """Runs with constant squares per dimension over the epochs, the first ``spoilt`` unknown."""
+    found = result(rate or [1.0] * len(nis), [0.1] * len(nis))
+    squares, counts = (np.repeat([values], 60, axis=0).T for values in (nis, [freedom] * len(nis)))
+    squares[:, :spoilt], counts[:, :spoilt] = np.nan, 0.0
+    found.errors.update(nis=squares, nis_dof=counts)
+    return found
+
+
+NIS: dict[str, str] = {"quantity": "nis"}
+
+
+@pytest.mark.parametrize(
+    ("level", "words"), [(1.0, "consistent"), (1.3, "over-confident"), (0.7, "over-cautious")]
+)
+@pytest.mark.parametrize("statistic", ["mean", "p50", "median"])
+def test_a_normalised_square_is_judged_in_words(
+    level: float, words: str, statistic: str, small: Path
+) -> None:
+    """Three runs of 50 degrees at one epoch: 0.78 to 1.24 for the mean, by the chi-square."""
+    text = small.read_text()
+    small.write_text(text.replace("statistics: [mean]", f"statistics: [{statistic}]"))
+    before, title, after = small.read_text().partition("What a filter says")
+    small.write_text(before + title + after.replace("[0-60 s]", "[50 s]"))
+    row = cell(rows_of(load_scenario(small), slow_triad=judged([level] * 3)), **NIS)
+    assert row["verdict"] == words
+    assert row["consistent_low"] < 1 < row["consistent_high"]
+    if statistic == "mean":
+        wanted = [chi2.ppf(share, 150) / 150 for share in (0.025, 0.975)]
+        assert row[["consistent_low", "consistent_high"]].tolist() == pytest.approx(wanted, 1e-5)
+
+
+def test_diverged_runs_do_not_count_in_a_verdict(scenario: LoadedScenario) -> None:
+    found = judged([1.0, 1.0, 500.0], rate=[1.0, 1.0, 99.0])
+    row = cell(rows_of(scenario, slow_triad=found), **NIS)
+    assert (row["verdict"], row["diverged"]) == ("consistent", 1)
+    lost = judged([500.0, 500.0], rate=[99.0, 99.0])
+    row = cell(rows_of(scenario, slow_triad=lost), **NIS)
+    assert (row["verdict"], row["diverged"]) == ("unpublished", 2)
+    assert np.isnan([row["consistent_low"], row["consistent_high"]]).all()
+
+
+def test_independent_epochs_add_up(scenario: LoadedScenario) -> None:
+    """The scenario's window of nis is longer than one epoch, and innovations are white."""
+    row = cell(rows_of(scenario, slow_triad=judged([1.0])), **NIS)
+    low, high = chi2.interval(0.95, 60 * 50)
+    assert row["consistent_low"] == pytest.approx(low / 3000, 1e-5)
+    assert row["consistent_high"] == pytest.approx(high / 3000, 1e-5)
+
+
+def test_a_window_without_freedom_makes_no_cell(scenario: LoadedScenario) -> None:
+    rows = rows_of(scenario, slow_triad=judged([1.0, 1.0], spoilt=60))
+    assert "nis" not in set(rows["quantity"])
+
+
+def test_other_quantities_have_no_interval(scenario: LoadedScenario) -> None:
+    rows = rows_of(scenario, slow_triad=judged([1.0, 1.0]), fast_triad=judged([1.0, 1.0]))
+    others = rows[rows["quantity"] != "nis"]
+    assert others[["consistent_low", "consistent_high"]].isna().all(axis=None)
+    assert not set(others["verdict"]) & {"consistent", "over-confident", "over-cautious"}
+
+
+@pytest.mark.parametrize("form", ["md", "tex", "rich", "csv", "json"])
+def test_the_words_stand_beside_each_estimator(form: str, scenario: LoadedScenario) -> None:
+    given = {"slow_triad": judged([1.0] * 3), "slow_wahba": judged([3.0] * 3)}
+    text = render(scenario, rows_of(scenario, **given), form)
+    if form == "json":
+        text = "\n".join(str(list(record.values())) for record in json.loads(text))
+    for estimator, words in (("triad", "consistent"), ("wahba", "over-confident")):
+        lines = [line for line in text.splitlines() if estimator in line]
+        assert any(words in line for line in lines), (estimator, words)
 
 
 # rendering

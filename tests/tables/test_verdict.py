@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from debrisest.tables.verdict import SYMBOLS, Verdict, interval_meets, verdict
+from debrisest.tables.verdict import SYMBOLS, Verdict, consistency, interval_meets, verdict
 
 positive = st.floats(1e-3, 1e3)
 factors = st.floats(1.01, 10)
@@ -95,3 +95,20 @@ def test_an_interval_meets_the_verdict_of_each_figure_in_it(
 def test_every_verdict_has_a_symbol_of_its_own() -> None:
     assert SYMBOLS.keys() == set(Verdict)
     assert len(set(SYMBOLS.values())) == len(Verdict)
+
+
+@pytest.mark.parametrize(
+    ("measured", "expected"),
+    [
+        (0.7999, "over-cautious"),
+        (0.8, "consistent"),
+        (1.2, "consistent"),
+        (1.2001, "over-confident"),
+        (np.inf, "unpublished"),
+        (np.nan, "unpublished"),
+    ],
+)
+def test_consistency_in_words(measured: float, expected: str) -> None:
+    assert consistency(measured, 0.8, 1.2, 0.5) == expected
+    assert consistency(measured, 0.8, 1.2, 0.5001) == "unpublished"
+    assert consistency(measured, np.nan, np.nan, 0.0) == "unpublished"
