@@ -36,7 +36,10 @@ from debrisest.dynamics.torque_free import torque_free
 from debrisest.filters.extended import extended
 from debrisest.filters.model import Model
 from debrisest.filters.replay import replay
-from debrisest.filters.unscented import unscented
+from debrisest.filters.unscented import UnscentedParameters, unscented
+from debrisest.problems.camera_range_redundant_model import Setup as Redundant
+from debrisest.problems.camera_range_redundant_model import process as shape_process
+from debrisest.problems.camera_range_redundant_model import redundant_model
 from debrisest.problems.stereo_pose_additive import additive_model
 from debrisest.problems.stereo_pose_model import Setup, measurement, setup
 from debrisest.problems.stereo_pose_replay import replay_model
@@ -227,6 +230,93 @@ def benchmark_replay(rounds: int) -> Row:
     return row
 
 
+# --- pose and shape: the 91-state filter against filterpy, and its cost over the points -----------
+
+MEAN_MOTION = 1.078e-3
+CUBATURE = UnscentedParameters(1.0, 0.0, 0.0)
+
+
+def shape_run(runs: int, epochs: int, points: int) -> tuple[Model, Array, Array, Array]:
+    """Return model, start and measurements (run, time, m) of a target of so many points."""
+    rng, known = np.random.default_rng(4), Redundant(points, MEAN_MOTION, 5.0, 1000.0)
+    rho = np.array([5.0, 17.3, 5.9, 9.3e-3, -1.078e-2, -1.1e-3])
+    body = rng.uniform(-1, 1, (points, 3))
+    seen = body + np.array([0.0, 0.0, np.linalg.norm(rho[:3])])
+    core = [1.0, 0, 0, 0, *np.radians([0.6, 0.4, 1.0]), *rho, 135.4, 208.3, 260.4, 0, 0, 0]
+    states = [np.concatenate([core, body.ravel(), seen.ravel()])[None]]
+    for _ in range(epochs - 1):
+        states.append(shape_process(known, states[-1]))
+    sigma = np.repeat([1e-4, 1e-3, 0.3, 3e-3, 0.1, 0.1], [4, 3, 3, 3, 6, 6 * points])
+    model = redundant_model(known, 1.04, 0.01)
+    shown = np.concatenate([model.measurement(state, 0) for state in states])
+    noise = np.sqrt(np.diag(model.measurement_noise)) * rng.standard_normal((runs, *shown.shape))
+    guess = states[0] + sigma * rng.standard_normal((runs, len(sigma)))
+    start = model.retract(guess, np.zeros_like(guess))
+    return model, start, np.tile(np.diag(sigma**2), (runs, 1, 1)), shown + noise
+
+
+def filterpy_shape(model: Model, state: Array, covariance: Array, measured: Array) -> Array:
+    """Return the states (time, n) of filterpy's filter on the same model, for one run."""
+    n, m = len(state), measured.shape[-1]
+    points = MerweScaledSigmaPoints(n, alpha=1.0, beta=0.0, kappa=0.0)
+    peer = UnscentedKalmanFilter(
+        dim_x=n,
+        dim_z=m,
+        dt=5.0,
+        fx=lambda x, _: model.process(x[None], 0)[0],
+        hx=lambda x: model.measurement(x[None], 0)[0],
+        points=points,
+    )
+    peer.x, peer.P = state.copy(), covariance.copy()
+    peer.Q, peer.R = model.process_noise, model.measurement_noise
+    states = []
+    for epoch, y in enumerate(measured):
+        if epoch > 0:
+            peer.predict()
+        peer.sigmas_f = points.sigma_points(peer.x, peer.P)
+        peer.update(y)
+        peer.x = model.retract(peer.x[None], np.zeros((1, n)))[0]
+        states.append(peer.x.copy())
+    return np.array(states)
+
+
+def benchmark_shape(runs: int, rounds: int) -> Row:
+    """Compare the filter of 12 points, 91 states and 183 sigma points with filterpy's."""
+    model, start, covariance, measured = shape_run(runs, 12, 12)
+    one = start[0], covariance[0], measured[0, :6]
+    theirs = filterpy_shape(model, *one)
+    ours = unscented(
+        model, start[:1], covariance[:1], measured[:1, :6], CUBATURE, redraw=True
+    ).state[0]
+    gap = np.abs(ours - theirs).max()
+    assert gap < 1e-6, f"filterpy's states differ by {gap}"
+    row = Row(f"91-state filter, {runs} at a time / filterpy", "run-step", [], [], f"{gap:.0e}")
+    for _ in range(rounds):
+        seconds = cpu(lambda: unscented(model, start, covariance, measured, CUBATURE, redraw=True))
+        row.ours.append(seconds / (12 * runs))
+        row.peer.append(cpu(lambda: filterpy_shape(model, *one)) / 6)
+    return row
+
+
+def shape_seconds(problem: tuple[Model, Array, Array, Array], rounds: int) -> float:
+    """Return the CPU seconds of the filter over all epochs, the median of the rounds."""
+    times = [cpu(lambda: unscented(*problem, CUBATURE, redraw=True)) for _ in range(rounds)]
+    return float(np.median(times))
+
+
+def cost_over_points(rounds: int) -> Table:
+    """Return the CPU milliseconds per run and step for several numbers of points."""
+    table = Table("points", "states", "sigma points", "ms per run-step, 20 runs", "one run")
+    for points in (6, 12, 24, 48):
+        shown = []
+        for runs, epochs in ((20, 8), (1, 20)):
+            seconds = shape_seconds(shape_run(runs, epochs, points), rounds)
+            shown.append(f"{1e3 * seconds / (runs * epochs):.2f}")
+        n = 6 * points + 19
+        table.add_row(str(points), str(n), str(2 * n + 1), *shown)
+    return table
+
+
 # --- basis pursuit against spgl1 --------------------------------------------------------------
 
 
@@ -324,6 +414,8 @@ def main(rounds: int = 5) -> None:
         benchmark_extended(rounds, numeric=True),
         benchmark_extended(rounds, numeric=False),
         benchmark_replay(rounds),
+        benchmark_shape(20, rounds),
+        benchmark_shape(1, rounds),
         benchmark_salsa(rounds),
     ]
     table = Table("comparison", "per", "ours, us", "peer, us", "ratio (range)", "results agree to")
@@ -339,6 +431,8 @@ def main(rounds: int = 5) -> None:
         )
     console = Console(width=120)
     console.print(table)
+    console.print("The filter of pose and shape with every point in two frames, cost over points:")
+    console.print(cost_over_points(rounds))
     seconds = help_seconds(rounds)
     console.print(f"debrisest --help: {np.median(seconds):.3f} s of CPU")
 

@@ -14,16 +14,22 @@ from debrisest.arrays import Data
 from debrisest.errors import UserError
 from debrisest.plan import Selection, plan
 from debrisest.plots import (
+    covariance_trace,
     error_over_time,
     histograms,
     nees_over_time,
+    orbit_error,
+    pixel_paths,
     pose_errors,
     rates,
     raw_quaternion,
     recovered_quaternion,
+    relative_trajectory,
+    shape,
+    torques,
 )
 from debrisest.plots.files import write
-from debrisest.plots.gather import Source, all_runs, single_runs
+from debrisest.plots.gather import Source, all_runs, simulations, single_runs
 from debrisest.scenario.load import LoadedScenario
 from debrisest.tables.cells import Results
 from debrisest.tables.results import load_results
@@ -33,13 +39,15 @@ class Kind(NamedTuple):
     """A figure: how it is drawn, from which datasets, and whether of one run or of all runs.
 
     What it draws of further datasets, such as a truth, is up to the figure. One of all runs is
-    given those in ``also`` if there are any, and may be drawn of each case by itself.
+    given those in ``also`` if there are any, and may be drawn of each case by itself. One of the
+    simulation is drawn once for each case, whatever the estimators.
     """
 
     draw: Callable[[Data, str], Figure]
     needs: tuple[str, ...]
     of_all_runs: bool = False
     of_each_case: bool = False
+    of_simulation: bool = False
     also: tuple[str, ...] = ()
 
 
@@ -48,11 +56,23 @@ FIGURES: dict[str, Kind] = {
     "recovered_quaternion": Kind(
         recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
     ),
-    "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma")),
+    "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma", "moments_b")),
     "error_over_time": Kind(
         error_over_time.error_over_time, error_over_time.QUANTITIES, of_all_runs=True
     ),
     "pose_errors": Kind(pose_errors.pose_errors, pose_errors.DATASETS[:1]),
+    "shape": Kind(shape.shape, shape.DATASETS),
+    "relative_trajectory": Kind(
+        relative_trajectory.relative_trajectory, relative_trajectory.DATASETS
+    ),
+    "orbit_error": Kind(orbit_error.orbit_error, orbit_error.DATASETS),
+    "covariance_trace": Kind(covariance_trace.covariance_trace, ("covariance_trace", "section")),
+    "pixel_paths": Kind(
+        pixel_paths.pixel_paths,
+        ("true_pixel", "section", "image_half_size", "observer"),
+        of_simulation=True,
+    ),
+    "torques": Kind(torques.torques, ("torque", "section", "observer"), of_simulation=True),
     "histograms": Kind(
         histograms.histograms,
         histograms.QUANTITIES[:1],
@@ -94,7 +114,12 @@ def _sources(
     results = load_results(steps)
     for source in single_runs(scenario, steps, results):
         for name, kind in FIGURES.items():
-            if not kind.of_all_runs and set(kind.needs) <= set(source.data):
+            of_one_run = not kind.of_all_runs and not kind.of_simulation
+            if of_one_run and set(kind.needs) <= set(source.data):
+                yield name, source
+    for source in simulations(scenario, steps):
+        for name, kind in FIGURES.items():
+            if kind.of_simulation and set(kind.needs) <= set(source.data):
                 yield name, source
     for name, kind in FIGURES.items():
         if kind.of_all_runs:

@@ -41,6 +41,18 @@ def single_runs(
             yield Source((case, estimator), context, data)
 
 
+def simulations(scenario: LoadedScenario, steps: Iterable[Step]) -> Iterator[Source]:
+    """Return what was simulated of the first run that did not fail, of every case."""
+    chunks: dict[str, Chunks] = {}
+    for step in steps:
+        if step.stage == "simulate":
+            chunks.setdefault(step.case.name, {})[step.first_run] = [step]
+    for case, found in chunks.items():
+        first = _first_good_run(found)
+        if first is not None:
+            yield Source((case,), f"{scenario.name}, case {case}, run {first[0]}", first[1])
+
+
 def all_runs(
     scenario: LoadedScenario, results: Results, quantities: Sequence[str]
 ) -> Iterator[Source]:

@@ -1,4 +1,7 @@
-"""Errors of one run's pose, rates and inertia ratios (Pesce et al. 2017, Figs. 5-10, 17-20)."""
+"""Errors of one run's pose, rates and inertia.
+
+Pesce et al. 2017, Figs. 5-10 and 17-20; Volpe et al. 2017, Figs. 6 and 8-10.
+"""
 
 from typing import NamedTuple
 
@@ -16,23 +19,47 @@ from debrisest.vocabulary import table_scale
 
 
 class _Group(NamedTuple):
-    """Components in one row of panels: their datasets, and the quantity whose unit they have."""
+    """Components in one row of panels: their datasets, and the quantity whose unit they have.
+
+    The sigma is the first of those named that there is. Components are numbered along all axes of
+    the dataset after time, row by row; those from 0 on are shown unless told otherwise.
+    """
 
     error: str
-    sigma: str
+    sigmas: tuple[str, ...]
     quantity: str
     labels: tuple[str, ...]
+    chosen: tuple[int, ...] = ()
+
+    def sigma(self, data: Data) -> Array | None:
+        """Return the sigma (time, component), if it is there."""
+        found = [self.of(data[name]) for name in self.sigmas if name in data]
+        return found[0] if found else None
+
+    def of(self, values: Array) -> Array:
+        """Return the chosen components (time, component) of a dataset (time, ...)."""
+        return values.reshape(len(values), -1)[:, list(self.chosen or range(len(self.labels)))]
 
 
 _AXES = ("x", "y", "z")
+_POSITION = ("position_sigma", "relative_position_h_sigma")
+_VELOCITY = ("velocity_sigma", "relative_velocity_h_sigma")
+_INERTIA, _LOG_RATIOS = ("inertia_b_sigma",), ("log_inertia_sigma",)
 _GROUPS = (
-    _Group("position_error", "position_sigma", "position", _AXES),
-    _Group("velocity_error", "velocity_sigma", "velocity", _AXES),
-    _Group("rate_error", "rate_l_sigma", "rate", _AXES),
-    _Group("inertia_ratio_error", "inertia_ratio_sigma", "k1", ("k1", "k2")),
+    _Group("position_error", _POSITION, "position", _AXES),
+    _Group("velocity_error", _VELOCITY, "velocity", _AXES),
+    _Group("rate_error", ("rate_l_sigma", "rate_b_sigma"), "rate", _AXES),
+    _Group("attitude_error", ("attitude_error_sigma",), "attitude", _AXES),
+    _Group("first_point_error", ("first_point_error_sigma",), "points", _AXES),
+    _Group("inertia_ratio_error", ("inertia_ratio_sigma",), "k1", ("k1", "k2")),
+    _Group("inertia_error", _INERTIA, "inertia_tensor", ("Ixx", "Iyy", "Izz"), (0, 4, 8)),
+    _Group("inertia_error", _INERTIA, "inertia_tensor", ("Ixy", "Ixz", "Iyz"), (1, 2, 5)),
+    _Group("log_inertia_error", _LOG_RATIOS, "inertia", ("s1", "s2", "s3")),
+    _Group("log_inertia_error", _LOG_RATIOS, "inertia", ("s4", "s5"), (3, 4)),
 )
-_WORDS = {"k1": "inertia ratio"}
-DATASETS = tuple(group.error for group in _GROUPS)
+_WORDS = {"k1": "inertia ratio", "inertia": "log-ratio", "inertia_tensor": "inertia"}
+_WORDS |= {"points": "first point"}
+DATASETS = tuple(dict.fromkeys(group.error for group in _GROUPS))
 _SETTLED = 0.1
 """Part of the time, at the start, that the limits of the axes do not follow."""
 
@@ -50,14 +77,13 @@ def pose_errors(data: Data, context: str) -> Figure:
         time_axis(list(column), times)
     figure.align_ylabels(grid[:, 0])
     heading(top, "Errors with 3-sigma bands", context)
-    legend_below(figure, _handles(any(group.sigma in data for group in groups)))
+    legend_below(figure, _handles(any(group.sigma(data) is not None for group in groups)))
     return figure
 
 
 def _group(row: list[Axes], group: _Group, data: Data) -> None:
     scale = table_scale(group.quantity)
-    error = scale * data[group.error]
-    sigma = data.get(group.sigma)
+    error, sigma = scale * group.of(data[group.error]), group.sigma(data)
     bound = np.full_like(error, np.nan) if sigma is None else 3 * scale * sigma
     for index, (axis, label) in enumerate(zip(row, group.labels)):
         _component(axis, data["time_s"], error[:, index], bound[:, index], index)

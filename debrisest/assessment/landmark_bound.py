@@ -1,0 +1,123 @@
+"""Cramer-Rao bound of a landmark model, as the errors of the efficient estimator.
+
+As in `debrisest.assessment.bound`, the estimator is linearised at the truth and given the noise of
+the very measurements that the others have seen. Here the information is gathered frame by frame, so
+that the memory does not grow with the number of landmarks times that of frames.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.filters.landmark_model import LandmarkModel, Rows, Sights
+from debrisest.filters.scaled import scaled_inverse
+
+_BLOCK = 16  # frames whose rows are held at a time
+_OUTLIER = 7.0
+"""A measurement so many sigmas off is a false match, which the efficient estimator recognises."""
+
+
+class LandmarkBound(NamedTuple):
+    """Errors of the efficient filter at every epoch, and what is to be expected of them."""
+
+    error: Array
+    """(run, time, n_c + 3 N)."""
+    sigma: Array
+    covariance: Array
+    """(run, kept, n_c + 3 N, n_c + 3 N)."""
+
+
+def landmark_bound(
+    model: LandmarkModel,
+    core: Array,
+    points: Array,
+    parameters: Array,
+    covariance: Array,
+    sights: Sights,
+    keep: Sequence[int] = (),
+) -> LandmarkBound:
+    """Return the errors of the efficient estimator for the runs of an experiment.
+
+    ``core (run, n)`` and ``points (run, N, 3)`` are the truth at epoch 0, ``parameters (run, n_x)``
+    the first guess with the covariance (run, n_x + 3 N, n_x + 3 N) of it and of the points, whose
+    first guess is taken as exact. ``keep`` lists the epochs whose covariance is wanted.
+    """
+    runs, epochs = sights.seen.shape[:2]
+    start, freedom = model.start(model.parameters(core))
+    cores, transitions = model.trajectory(start, epochs - 1)
+    n_x, extra = freedom.shape[-1], 3 * model.landmarks
+    information = scaled_inverse(covariance)
+    offset = np.zeros((runs, n_x + extra))
+    offset[:, :n_x] = parameters - model.parameters(core)
+    gradient = (information @ offset[..., None])[..., 0]
+    n_e = model.errors + extra
+    error, sigma = np.empty((2, runs, epochs, n_e))
+    kept = np.empty((runs, len(keep), n_e, n_e))
+    for first in range(0, epochs, _BLOCK):
+        part = np.arange(first, min(first + _BLOCK, epochs))
+        rows = model.rows(cores[:, part], points[:, None], part)
+        response, residual = _whitened(model, rows, sights.at(slice(None), part))
+        for i, k in enumerate(part):
+            by_start = transitions[:, k] @ freedom
+            h = np.concatenate([response[:, i, :, :-extra] @ by_start, response[:, i, :, -extra:]], -1)
+            back = np.swapaxes(h, -1, -2)
+            information = information + back @ h
+            gradient = gradient + (back @ residual[:, i, :, None])[..., 0]
+            inverse = scaled_inverse(information)
+            spread = _moved(by_start, inverse)
+            error[:, k] = _moved_error(by_start, (inverse @ gradient[..., None])[..., 0])
+            sigma[:, k] = np.sqrt(np.diagonal(spread, 0, -2, -1))
+            for slot in np.flatnonzero(np.asarray(keep) == k):
+                kept[:, slot] = spread
+    return LandmarkBound(error, sigma, kept)
+
+
+def _whitened(model: LandmarkModel, rows: Rows, sights: Sights) -> tuple[Array, Array]:
+    """Rows (run, epoch, m, n_c + 3 N) and residuals of unit noise, zero where nothing counts."""
+    residual = (sights.shown - rows.shown) / model.sigma
+    near = (np.abs(residual) < _OUTLIER) | ~sights.seen
+    used = sights.seen & near.all(-1, keepdims=True)
+    runs, epochs, landmarks, each = used.shape
+    count, n_c = landmarks * each, model.errors
+    scale = (used / model.sigma)[..., None]
+    flat = np.zeros((runs, epochs, count + model.common, n_c + 3 * landmarks))
+    flat[:, :, :count, :n_c] = (rows.by_core * scale).reshape(runs, epochs, count, n_c)
+    row = np.arange(count).reshape(landmarks, each, 1)
+    column = n_c + np.arange(3 * landmarks).reshape(landmarks, 1, 3)
+    flat[:, :, row, column] = rows.by_point * scale
+    weight = sights.common_seen / model.common_sigma
+    flat[:, :, count:, :n_c] = rows.common_by_core * weight[..., None]
+    result = np.concatenate(
+        [
+            np.where(used, residual, 0.0).reshape(runs, epochs, count),
+            np.where(sights.common_seen, (sights.common - rows.common) * weight, 0.0),
+        ],
+        axis=-1,
+    )
+    if rows.shared.shape[-1] == 0:
+        return flat, result
+    shared = (rows.shared * scale).reshape(runs, epochs, count, -1)
+    noise = np.eye(count) + shared @ np.swapaxes(shared, -1, -2)
+    both = np.concatenate([flat[:, :, :count], result[:, :, :count, None]], axis=-1)
+    both = np.linalg.solve(np.linalg.cholesky(noise), both)
+    flat[:, :, :count], result[:, :, :count] = both[..., :-1], both[..., -1]
+    return flat, result
+
+
+def _moved(by_start: Array, covariance: Array) -> Array:
+    """Covariance of the errors of an epoch from that of the unknowns."""
+    n_x = by_start.shape[-1]
+    top = by_start @ covariance[:, :n_x]
+    corner = top[..., :n_x] @ np.swapaxes(by_start, -1, -2)
+    side = top[..., n_x:]
+    upper = np.concatenate([0.5 * (corner + np.swapaxes(corner, -1, -2)), side], axis=-1)
+    lower = np.concatenate([np.swapaxes(side, -1, -2), covariance[:, n_x:, n_x:]], axis=-1)
+    return np.concatenate([upper, lower], axis=-2)
+
+
+def _moved_error(by_start: Array, error: Array) -> Array:
+    n_x = by_start.shape[-1]
+    core = (by_start @ error[:, :n_x, None])[..., 0]
+    return np.concatenate([core, error[:, n_x:]], axis=-1)

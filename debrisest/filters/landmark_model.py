@@ -1,0 +1,121 @@
+"""What the landmark filters are handed: a `LandmarkModel`, a moving core and points fixed in it."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray, IntArray
+
+
+class Rows(NamedTuple):
+    """What epochs show of states, and how it depends on their errors.
+
+    N landmarks show r components each, of which each depends on the core and on its own landmark;
+    m common components depend on the core alone.
+    """
+
+    shown: Array
+    """(..., N, r)."""
+    by_core: Array
+    """(..., N, r, n_c)."""
+    by_point: Array
+    """(..., N, r, 3)."""
+    common: Array
+    """(..., m)."""
+    common_by_core: Array
+    """(..., m, n_c)."""
+    shared: Array
+    """Noise that all landmarks of an epoch share, per unit of each of its c causes,
+    (..., N, r, c); c may be zero."""
+
+
+class Sights(NamedTuple):
+    """Measurements of runs and epochs, zero where nothing was seen."""
+
+    shown: Array
+    """(run, ..., N, r)."""
+    seen: BoolArray
+    """Same shape as `shown`."""
+    common: Array
+    """(run, ..., m)."""
+    common_seen: BoolArray
+
+    def at(self, *index: object) -> "Sights":
+        """Return those of some runs and epochs."""
+        return Sights(*(values[index] for values in self))
+
+
+class LandmarkModel(NamedTuple):
+    """A deterministic motion of a *core* state and of N points that are constant vectors.
+
+    The core (run, n) has n_c errors, the first `held` of which follow from the others at epoch 0
+    where the start is one of the model's own: then the core is `start` of n_c - held parameters,
+    which are a vector space. Errors of points are added. A state is the core with the points
+    behind it, its errors are those of the core, then of the points. The run is the first axis;
+    further axes are epochs.
+    """
+
+    landmarks: int
+    rows_each: int
+    common: int
+    held: int
+    sigma: Array
+    """Noise of a landmark's components (r,); all noise is independent but for `Rows.shared`."""
+    common_sigma: Array
+    """(m,)."""
+    error_names: tuple[str, ...]
+    """Of the core and of the points, n_c + 3 N."""
+    start: Callable[[Array], tuple[Array, Array]]
+    """parameters (run, n_c - held) -> core (run, n) at epoch 0, and the derivative
+    (run, n_c, n_c - held) of its errors."""
+    parameters: Callable[[Array], Array]
+    """Inverse of `start`."""
+    mirror: Callable[[Array, Array], tuple[Array, Array]]
+    """(parameters, points (run, N, 3)) -> those of the other motion that looks nearly the same."""
+    trajectory: Callable[[Array, int], tuple[Array, Array]]
+    """(core at epoch 0, last) -> cores (run, last + 1, n), errors of each epoch by those of epoch 0
+    (run, last + 1, n_c, n_c)."""
+    process: Callable[[Array], tuple[Array, Array]]
+    """core -> core one epoch later, and the derivative (run, n_c, n_c) of its errors."""
+    rows: Callable[[Array, Array, IntArray], Rows]
+    """(cores (run, epoch, n), points (run, 1, N, 3), epochs) -> rows (run, epoch, ...)."""
+    place: Callable[[Array, Array, IntArray], tuple[Array, Array, Array]]
+    """(cores (run, N, n), what each landmark showed (run, N, r), epochs (run, N)) -> points
+    (run, N, 3), their derivative (run, N, 3, n_c) by the core's errors, and the covariance
+    (run, N, 3, 3) that does not come from these."""
+    retract: Callable[[Array, Array], Array]
+    """(core, error) -> core."""
+    difference: Callable[[Array, Array], Array]
+    """(core, reference) -> error with which `retract` takes the reference there."""
+    of: Callable[[IntArray], "LandmarkModel"]
+    """The model of some of the runs, any number of times each."""
+
+    @property
+    def errors(self) -> int:
+        """Number of the core's errors."""
+        return len(self.error_names) - 3 * self.landmarks
+
+
+def split(model: LandmarkModel, measured: Array) -> Sights:
+    """Return measurements ``(run, time, N r + m)``, landmark by landmark, as sights."""
+    seen = ~np.isnan(measured)
+    filled, each = np.where(seen, measured, 0.0), model.landmarks * model.rows_each
+    shape = (*measured.shape[:-1], model.landmarks, model.rows_each)
+    return Sights(
+        filled[..., :each].reshape(shape),
+        seen[..., :each].reshape(shape),
+        filled[..., each:],
+        seen[..., each:],
+    )
+
+
+def points_of(model: LandmarkModel, state: Array) -> Array:
+    """Points (..., N, 3) of a whole state."""
+    first = state.shape[-1] - 3 * model.landmarks
+    return state[..., first:].reshape(*state.shape[:-1], model.landmarks, 3)
+
+
+def joined(core: Array, points: Array) -> Array:
+    """Whole state (..., n + 3 N)."""
+    return np.concatenate([core, points.reshape(*points.shape[:-2], -1)], axis=-1)

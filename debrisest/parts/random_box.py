@@ -1,0 +1,52 @@
+"""A target that differs from run to run: a homogeneous box with points anywhere in it."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import AfterValidator, Field
+
+from debrisest.arrays import Array, Data
+from debrisest.clock import Clock
+from debrisest.draws import Draws, Stream
+from debrisest.roles import Positive, SimulationPart
+
+
+def _ascending(limits: list[float]) -> list[float]:
+    if limits[0] > limits[1]:
+        raise ValueError("the lower limit comes first")
+    return limits
+
+
+Limits = Annotated[list[Positive], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
+
+
+class RandomBox(SimulationPart):
+    """Half sides, and points inside, drawn for each run; the origin is the centre of mass.
+
+    The surface at a point is parallel to the face of the box that it is nearest to.
+    """
+
+    gives = ("true_point_b", "true_normal_b", "true_inertia_b")
+    kind: Literal["random_box"]
+    count: Annotated[int, Field(ge=3)]
+    half_side_m: Limits = Field(description="lower and upper limit")
+    mass_kg: Positive = 500.0
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return points, normals and inertia of each run's box."""
+        low, high = self.half_side_m
+        half = low + (high - low) * draws.uniform(Stream.TRUTH, (3,))
+        relative = 2 * draws.uniform(Stream.TRUTH, (self.count, 3)) - 1
+        nearest = np.eye(3)[np.abs(relative).argmax(-1)]
+        return {
+            "feature": np.array([f"p{i + 1}" for i in range(self.count)]),
+            "true_point_b": half[:, None] * relative,
+            "true_normal_b": nearest * np.where(relative < 0, -1.0, 1.0),
+            "true_inertia_b": self.mass_kg * _box_moments(half)[..., None] * np.eye(3),
+        }
+
+
+def _box_moments(half: Array) -> Array:
+    """Moments (run, 3) of homogeneous boxes of unit mass with half sides (run, 3)."""
+    square = half**2
+    return np.asarray((square.sum(-1, keepdims=True) - square) / 3)

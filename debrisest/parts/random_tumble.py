@@ -1,0 +1,51 @@
+"""A rotation that differs from run to run."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import AfterValidator, Field
+
+from debrisest.arrays import Data
+from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.draws import Draws, Stream
+from debrisest.dynamics.gravity_gradient import tumble
+from debrisest.dynamics.kepler import propagate
+from debrisest.roles import NonNegative, SimulationPart
+
+
+def _ascending(limits: list[float]) -> list[float]:
+    if limits[0] > limits[1]:
+        raise ValueError("the lower limit comes first")
+    return limits
+
+
+Limits = Annotated[list[NonNegative], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
+
+
+class RandomTumble(SimulationPart):
+    """Attitude and axis drawn evenly, rate between two limits, under the gravity gradient."""
+
+    needs = ("true_inertia_b", "orbit_position", "orbit_velocity")
+    gives = ("true_q_ib", "true_rate_b")
+    kind: Literal["random_tumble"]
+    rate_deg_s: Limits = Field(description="lower and upper limit of the rate at time zero")
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return attitude and rate of the body axes of each run."""
+        position, velocity = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+        q_ib = quaternion.normalize(draws.normal(Stream.TRUTH, (4,)))
+        axis = draws.normal(Stream.TRUTH, (3,))
+        axis /= np.linalg.norm(axis, axis=-1, keepdims=True)
+        low, high = np.radians(self.rate_deg_s)
+        rate = (low + (high - low) * draws.uniform(Stream.TRUTH, (1,))) * axis
+        motions = [
+            tumble(
+                clock.times,
+                *start,
+                lambda time: propagate(position, velocity, np.array([time]))[0][0],
+            )
+            for start in zip(q_ib, rate, data["true_inertia_b"])
+        ]
+        attitudes, rates = zip(*motions)
+        return {"true_q_ib": np.stack(attitudes), "true_rate_b": np.stack(rates)}

@@ -1,0 +1,102 @@
+"""What is guessed of a target of unknown shape before it has been filmed."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from debrisest.arrays import Array, Data
+from debrisest.clock import Clock
+from debrisest.draws import Draws, Stream
+from debrisest.roles import Positive, SimulationPart, StartPart
+from debrisest.target.start_frame import in_start_frame
+
+
+class ShapeGuess(SimulationPart):
+    """Position, rate and inertia drawn about the truth, no velocity, all points at one depth.
+
+    The first image gives the points' directions; their depth is that of the centre of mass. Body
+    axes are the camera's at time zero.
+    """
+
+    needs = ("image_point", "measured_range", "true_q_hc", "true_q_ib", "true_inertia_b")
+    gives = tuple(
+        f"start_{name}"
+        for name in (
+            *("relative_position_h", "relative_velocity_h", "q_cb", "rate_b", "inertia_b"),
+            *("point_b", "point_c"),
+        )
+    )
+    kind: Literal["shape_guess"]
+    position_sigma_m: Positive = Field(2.0, description="the length is then the measured range")
+    velocity_sigma_m_s: Positive = Field(0.03, description="of the guess zero")
+    q_sigma: Positive = Field(1e-3, description="of each component; the guess is exact")
+    rate_sigma_deg_s: Positive = 0.3
+    inertia_sigma_kg_m2: Positive = 1.0
+    point_sigma_m: Positive = Field(0.3, description="across the line of sight")
+    depth_sigma_m: Positive = 1.5
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return the first guess and its sigma."""
+        truth, runs = in_start_frame(data, data["true_q_hc"][:, 0]), len(draws.runs)
+        drawn = draws.normal(Stream.INITIAL_ERROR, (4, 3))
+        position = data["chaser_position_h"][:, 0] + self.position_sigma_m * drawn[:, 0]
+        position *= (data["measured_range"][:, 0] / np.linalg.norm(position, axis=-1))[:, None]
+        rate_sigma = float(np.radians(self.rate_sigma_deg_s))
+        error = _symmetric(drawn[:, 2:].reshape(runs, 6))
+        point_c, sigma = self._points(data, position)
+        guess: Data = {
+            "relative_position_h": position,
+            "relative_velocity_h": np.zeros((runs, 3)),
+            "q_cb": np.tile([1.0, 0.0, 0.0, 0.0], (runs, 1)),
+            "rate_b": truth.rate[:, 0] + rate_sigma * drawn[:, 1],
+            "inertia_b": truth.inertia + self.inertia_sigma_kg_m2 * error,
+            "point_c": point_c,
+            "point_b": point_c - [0.0, 0.0, 1.0] * np.linalg.norm(position, axis=-1)[:, None, None],
+        }
+        sigmas: dict[str, float | Array] = {
+            "relative_position_h": self.position_sigma_m,
+            "relative_velocity_h": self.velocity_sigma_m_s,
+            "q_cb": self.q_sigma,
+            "rate_b": rate_sigma,
+            "inertia_b": self.inertia_sigma_kg_m2,
+            "point_c": sigma,
+            "point_b": sigma,
+        }
+        return _named(guess, sigmas)
+
+    def _points(self, data: Data, position: Array) -> tuple[Array, Array]:
+        """Points (run, feature, 3) on the plane through the centre of mass, and their sigma.
+
+        Of a point that the first image lacks, nothing is known but that it is near.
+        """
+        pixel = data["image_point"][:, 0]
+        depth = np.linalg.norm(position, axis=-1)[:, None]
+        seen = ~np.isnan(pixel[..., 0])
+        slope = np.where(seen[..., None], pixel, 0.0) / data["focal_px"][:, None, None]
+        point = np.concatenate([slope, np.ones_like(slope[..., :1])], axis=-1) * depth[..., None]
+        across = np.where(seen, self.point_sigma_m, self.depth_sigma_m)
+        sigma = np.stack([across, across, np.full_like(across, self.depth_sigma_m)], axis=-1)
+        return point, sigma
+
+
+class Guessed(StartPart):
+    """The sensor's first guess as it stands, with a sigma for every component."""
+
+    needs = ("start_relative_position_h", "start_point_c")
+    kind: Literal["guessed"]
+
+    def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:
+        """Return the initial guess by name, each with its ``_sigma``; no further variances."""
+        guesses = {name for name in data if name.startswith("start_")}
+        return {name.removeprefix("start_"): data[name] for name in guesses}, {}
+
+
+def _symmetric(elements: Array) -> Array:
+    """Symmetric matrices (..., 3, 3) of their six elements."""
+    return np.asarray(elements[..., [[0, 3, 4], [3, 1, 5], [4, 5, 2]]])
+
+
+def _named(guess: Data, sigmas: dict[str, float | Array]) -> Data:
+    spread = {f"start_{n}_sigma": np.broadcast_to(s, guess[n].shape) for n, s in sigmas.items()}
+    return {f"start_{name}": value for name, value in guess.items()} | spread
