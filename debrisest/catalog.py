@@ -14,6 +14,8 @@ from debrisest.parts.association_filters import (
 from debrisest.parts.camera_range_sensors import CameraRange
 from debrisest.parts.detections import Detections
 from debrisest.parts.filters import Extended, Unscented
+from debrisest.parts.first_image import FirstImage
+from debrisest.parts.landmark_filters import LandmarkBatch, LandmarkBound, LandmarkFilter
 from debrisest.parts.leader_motion import SeenFromLeader
 from debrisest.parts.motions import GravityGradient, TorqueFree
 from debrisest.parts.observers import Drift, Hold
@@ -32,6 +34,7 @@ from debrisest.parts.starts import Drawn, FirstPoints, FirstSamples
 from debrisest.parts.stereo_sensors import AngularAcceleration, FirstGuess, StereoCamera
 from debrisest.parts.targets import RigidPoints
 from debrisest.parts.tracking_sensors import AttitudeKnowledge, OrbitGuess, PinholeCamera
+from debrisest.problems.camera_range_minimal import CameraRangeMinimal
 from debrisest.problems.camera_range_redundant import CameraRangeRedundant
 from debrisest.problems.orbit_from_pixels import OrbitFromPixels
 from debrisest.problems.stereo_pose import StereoPose, StereoPoseAdditive
@@ -70,9 +73,10 @@ CATALOG: dict[str, list[type[Part]]] = {
         StereoPoseAdditive,
         StereoPose,
         CameraRangeRedundant,
+        CameraRangeMinimal,
         OrbitFromPixels,
     ],
-    "start": [FirstSamples, FirstPoints, Drawn, Guessed],
+    "start": [FirstSamples, FirstPoints, Drawn, Guessed, FirstImage],
     "filter": [
         Unscented,
         Extended,
@@ -82,5 +86,8 @@ CATALOG: dict[str, list[type[Part]]] = {
         JointAssociation,
         KnownAssociation,
         LinearisedAtTruth,
+        LandmarkBatch,
+        LandmarkFilter,
+        LandmarkBound,
     ],
 }

@@ -145,6 +145,7 @@ VOCABULARY: dict[str, Quantity] = {
     "start_attitude_bias_sigma": Quantity(("run", "observer", "axis"), "rad", "its 1-sigma"),
     "cameras_at_start": Quantity(_RUN, "1", "cameras that see the debris at time zero", "1"),
     "pointing_status": Quantity(_RUN, "", "whether the debris stayed in view, in words"),
+    "first_section": Quantity(_RUN, "s", "when cameras are turned for the first time", "s"),
     "settling_time": Quantity(_RUN, "s", "until the pixel stays within 5 px of the middle", "s"),
     "stage_one_time": Quantity(_RUN, "s", "length of the first stage of control", "s"),
     "peak_torque": Quantity(_RUN, "N m", "largest component of the torque", "mN m"),
@@ -228,6 +229,10 @@ VOCABULARY: dict[str, Quantity] = {
     "log_inertia_sigma": Quantity((*_TIME, "log_ratio"), "1", "1-sigma of log_inertia"),
     "inertia_b": Quantity((*_TIME, "row", "column"), "kg m2", "estimated inertia tensor"),
     "inertia_b_sigma": Quantity((*_TIME, "row", "column"), "kg m2", "1-sigma of inertia_b"),
+    "range_bias": Quantity(_TIME, "m", "estimated distance of the surface from the centre of mass"),
+    "range_bias_sigma": Quantity(_TIME, "m", "1-sigma of range_bias"),
+    "camera_bias": Quantity(_TIME_VECTOR, "rad", "estimated error of known_q_hc, camera axes"),
+    "camera_bias_sigma": Quantity(_TIME_VECTOR, "rad", "1-sigma of camera_bias"),
     "point_c": Quantity((*_TIME, "feature", "axis"), "m", "estimated features from the camera"),
     "point_c_sigma": Quantity((*_TIME, "feature", "axis"), "m", "1-sigma of point_c"),
     "debris_position": Quantity(_TIME_VECTOR, "m", "estimated position, Earth-centred inertial"),
@@ -255,6 +260,9 @@ VOCABULARY: dict[str, Quantity] = {
     "reopened": Quantity(_RUN, "1", "times that the gate was reopened", "1"),
     "updates": Quantity(_TIME, "1", "iterations of the update at the epoch"),
     "converged": Quantity(_RUN, "1", "the last replay converged", "1"),
+    "restarts": Quantity(_RUN, "1", "restarts of the batch", "1"),
+    "dropped": Quantity(_RUN, "1", "landmarks that were given up", "1"),
+    "fit": Quantity(_RUN, "1", "cost of the batch per degree of freedom", "1"),
     "repairs": Quantity(_RUN, "1", "covariance repairs", "1"),
     # assess
     "relabeling": Quantity(("run", "row", "column"), "1", "estimated to true principal axes"),
@@ -335,6 +343,10 @@ _TABLE_SCALE = {
     ("m2", "km2"): 1e-6,
     ("N m", "mN m"): 1e3,
 }
+
+
+TWO_SIDED = ("first_section",)
+"""Quantities of the tables that are no errors: more is as bad as less."""
 
 
 def has_runs(name: str) -> bool:

@@ -61,7 +61,9 @@ def landmark_bound(
         response, residual = _whitened(model, rows, sights.at(slice(None), part))
         for i, k in enumerate(part):
             by_start = transitions[:, k] @ freedom
-            h = np.concatenate([response[:, i, :, :-extra] @ by_start, response[:, i, :, -extra:]], -1)
+            h = np.concatenate(
+                [response[:, i, :, :-extra] @ by_start, response[:, i, :, -extra:]], -1
+            )
             back = np.swapaxes(h, -1, -2)
             information = information + back @ h
             gradient = gradient + (back @ residual[:, i, :, None])[..., 0]

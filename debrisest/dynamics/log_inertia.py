@@ -56,7 +56,7 @@ def with_derivative(s: Array) -> tuple[Array, Array, Array]:
 
 
 def _matrix(s: Array) -> Array:
-    return (s @ BASIS.reshape(5, 9)).reshape(*s.shape[:-1], 3, 3)
+    return np.asarray((s[..., None, :] @ BASIS.reshape(5, 9)).reshape(*s.shape[:-1], 3, 3))
 
 
 def _rebuilt(values: Array, vectors: Array) -> Array:

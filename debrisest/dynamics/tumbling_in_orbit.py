@@ -53,11 +53,13 @@ def step(
     mean_motion: float,
     duration: float,
     products: Array | None = None,
+    gravity: bool = True,
 ) -> tuple[Array, Array, Stages]:
     """Attitude and rate after one classical Runge-Kutta step, and its stages.
 
     ``q_hb (..., 4)``, ``rate_b (..., 3)``, rad/s, with one body each; the duration is in s. Who
-    takes many steps can compute the ``products`` of `torque_products` once.
+    takes many steps can compute the ``products`` of `torque_products` once. Without ``gravity``
+    there is no torque.
     """
     if products is None:
         products = torque_products(shape)
@@ -65,7 +67,7 @@ def step(
     turned, spun = np.zeros_like(q_hb), np.zeros_like(rate_b)
     q, w = q_hb, rate_b
     for i, (part, weight) in enumerate(((0.5, 1.0), (0.5, 2.0), (1.0, 2.0), (0.0, 1.0))):
-        turn, spin, radial = _slopes(q, w, products, mean_motion)
+        turn, spin, radial = _slopes(q, w, products, mean_motion, gravity)
         rates[..., i, :], radials[..., i, :] = w, radial
         turned += weight * turn
         spun += weight * spin
@@ -79,16 +81,20 @@ def step(
 def torque_products(shape: Body) -> Array:
     """Matrix ``(..., 3, 9)`` that takes the products ``w_j w_k`` to ``-I^-1 (w x I w)``."""
     columns = _CROSS @ shape.inertia[..., None, :, :]
-    return np.asarray(shape.inverse @ np.moveaxis(columns, -3, -2).reshape(*columns.shape[:-3], 3, 9))
+    return np.asarray(
+        shape.inverse @ np.moveaxis(columns, -3, -2).reshape(*columns.shape[:-3], 3, 9)
+    )
 
 
-def sensitivity(stages: Stages, shape: Body, mean_motion: float, duration: float) -> Array:
+def sensitivity(
+    stages: Stages, shape: Body, mean_motion: float, duration: float, gravity: bool = True
+) -> Array:
     """Derivative ``(..., 6, 11)`` of attitude and rate after a step.
 
     By the errors of attitude, rate and log-ratios before it, from the variational equations along
     the step's ``stages (..., 4, 3)``; ``shape`` needs the same leading axes.
     """
-    by_motion, by_ratios = _variation(stages, shape, mean_motion)
+    by_motion, by_ratios = _variation(stages, shape, 3.0 * mean_motion**2 * gravity)
     start = np.zeros((*by_motion.shape[:-3], TURNING, 11))
     start[...] = np.eye(TURNING, 11)
     total, slope, at = start.copy(), start, start
@@ -100,21 +106,24 @@ def sensitivity(stages: Stages, shape: Body, mean_motion: float, duration: float
     return np.asarray(total)
 
 
-def _slopes(q: Array, w: Array, products: Array, mean_motion: float) -> tuple[Array, Array, Array]:
+def _slopes(
+    q: Array, w: Array, products: Array, mean_motion: float, gravity: bool
+) -> tuple[Array, Array, Array]:
     """Derivatives of attitude and rate, and the radial direction in body axes."""
-    directions = (q[..., :, None] * q[..., None, :]).reshape(*q.shape[:-1], 16) @ _DIRECTIONS
+    squares = (q[..., :, None] * q[..., None, :]).reshape(*q.shape[:-1], 1, 16)
+    directions = (squares @ _DIRECTIONS)[..., 0, :]
     radial = directions[..., :3]
     relative = w - mean_motion * directions[..., 3:]
-    turn = (q[..., None, :] @ (relative @ _SPIN).reshape(*q.shape[:-1], 4, 4))[..., 0, :]
-    pull = (3.0 * mean_motion**2) * radial
+    spinning = (relative[..., None, :] @ _SPIN).reshape(*q.shape[:-1], 4, 4)
+    turn = (q[..., None, :] @ spinning)[..., 0, :]
+    pull = (3.0 * mean_motion**2 * gravity) * radial
     squares = w[..., :, None] * w[..., None, :] - pull[..., :, None] * radial[..., None, :]
     spin = (products @ squares.reshape(*squares.shape[:-2], 9, 1))[..., 0]
     return turn, spin, radial
 
 
-def _variation(stages: Stages, shape: Body, mean_motion: float) -> tuple[Array, Array]:
+def _variation(stages: Stages, shape: Body, gravity: float) -> tuple[Array, Array]:
     """Derivatives of the slopes of errors, by errors ``(..., 4, 6, 6)`` and by log-ratios."""
-    gravity = 3.0 * mean_motion**2
     w, o = stages.rate, stages.radial
     inertia, inverse = shape.inertia[..., None, :, :], shape.inverse[..., None, :, :]
     iw, io = w @ shape.inertia, o @ shape.inertia

@@ -16,7 +16,7 @@ from debrisest.filters.landmark_model import LandmarkModel, Sights
 from debrisest.filters.scaled import scaled_solve
 
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
-_FEW = 5
+_FEW, _PATIENCE = 5, 3
 _DECREASE = 0.05
 """Predicted decrease of the cost below which a window is done."""
 
@@ -53,7 +53,9 @@ class Fit(NamedTuple):
 
     def put(self, runs: IntArray, other: "Fit") -> None:
         """Replace those of some runs, in place."""
-        for mine, new in zip((self.at, self.prior, self.found), (other.at, other.prior, other.found)):
+        for mine, new in zip(
+            (self.at, self.prior, self.found), (other.at, other.prior, other.found)
+        ):
             put(mine, runs, new)
         self.converged[runs] = other.converged
 
@@ -75,10 +77,14 @@ def fit(
     iterations: int,
     robust: bool,
 ) -> Fit:
-    """Minimise the cost over the windows in turn, at most ``iterations`` linearisations each."""
+    """Minimise the cost over the windows in turn, at most ``iterations`` linearisations each.
+
+    The last one, from which no other will go on, may take `_PATIENCE` times as many.
+    """
     for window in windows:
         at, prior = place(model, sights, at, prior, window.last)
-        found, converged = _descend(model, sights, at, prior, window.frames, iterations, robust)
+        most = iterations if window is not windows[-1] else _PATIENCE * iterations
+        found, converged = _descend(model, sights, at, prior, window.frames, most, robust)
     return Fit(at, prior, found, converged)
 
 
@@ -86,7 +92,7 @@ def place(
     model: LandmarkModel, sights: Sights, at: Unknowns, prior: Prior, last: int
 ) -> tuple[Unknowns, Prior]:
     """Give a place to the landmarks that were seen for the first time up to epoch ``last``."""
-    seen = sights.seen[:, : last + 1].any(-1)
+    seen: BoolArray = np.asarray(sights.seen[:, : last + 1].any(-1))
     new = seen.any(1) & ~at.placed
     if not new.any():
         return at, prior

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.arrays import BoolArray, IntArray
 from debrisest.filters.evidence import take
 from debrisest.filters.landmark_model import LandmarkModel, Sights, joined
 from debrisest.filters.landmark_tracks import Tracks, begin, inserted, judged, without
@@ -18,7 +18,7 @@ from debrisest.filters.replay_estimates import Estimates, ReplayStatus, empty, f
 
 
 class Annealing(NamedTuple):
-    """Noise variance times ``1 + gain exp(-k / epochs)``, so that early linearisations weigh less."""
+    """Noise variance times ``1 + gain exp(-k / epochs)``: early linearisations weigh less."""
 
     gain: float = 0.0
     epochs: float = 1.0
@@ -121,7 +121,7 @@ def _frame(
 ) -> tuple[Belief, Tracks, Frame | None]:
     """Update, then drop and insert landmarks."""
     seen = sights.seen & active[:, None, None]
-    shown = seen.any(-1)
+    shown: BoolArray = np.asarray(seen.any(-1))
     usable = sights._replace(
         seen=seen & tracks.present[..., None], common_seen=sights.common_seen & active[:, None]
     )
@@ -130,7 +130,7 @@ def _frame(
     belief, frame = update(model, belief, usable, k, rule, annealing.factor(k))
     new = shown & ~tracks.present
     before = tracks.present
-    tracks = judged(tracks, usable.seen.any(-1), frame.accepted)
+    tracks = judged(tracks, shown & before, frame.accepted)
     lost = before & ~tracks.present
     if lost.any():
         belief = without(belief, lost)
@@ -150,4 +150,5 @@ def _record(
     outcome.dropped[runs] = tracks.dropped.sum(-1)
     if frame is not None:
         result.nis[runs, k], result.nis_dof[runs, k] = frame.nis, frame.dof
+        result.rejected[runs, k] = frame.rejected
         outcome.iterations[runs, k] = frame.iterations

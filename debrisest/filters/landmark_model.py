@@ -1,7 +1,7 @@
 """What the landmark filters are handed: a `LandmarkModel`, a moving core and points fixed in it."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -41,9 +41,10 @@ class Sights(NamedTuple):
     """(run, ..., m)."""
     common_seen: BoolArray
 
-    def at(self, *index: object) -> "Sights":
+    def at(self, *index: Any) -> "Sights":
         """Return those of some runs and epochs."""
-        return Sights(*(values[index] for values in self))
+        parts: list[Any] = [values[index] for values in self]
+        return Sights(*parts)
 
 
 class LandmarkModel(NamedTuple):

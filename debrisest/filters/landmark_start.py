@@ -17,6 +17,8 @@ _PRUNE = 100.0
 """Excess of cost beyond the other solution's at which the mirror is given up early."""
 _TOLD_APART = 20.0
 """Difference of the costs of two solutions, twice the logarithm of their odds, that decides."""
+_VAGUE = 0.03
+"""Sigma of the points by their distance from the centre, above which the shape is not known."""
 _CONFIRMED_SHARE, _CONFIRMED_SIGHTS = 0.6, 5
 
 
@@ -41,7 +43,7 @@ class Batch(NamedTuple):
 
     windows: Sequence[Window]
     extended: Sequence[Window] = ()
-    """For the runs whose mirrors the windows do not tell apart."""
+    """For the runs whose mirrors the windows do not tell apart, or whose shape is still vague."""
     iterations: int = 15
     restarts: int = 4
     robust: bool = False
@@ -107,9 +109,10 @@ def batch_start(
         other.put(bad[won], beside.of(np.flatnonzero(won)))
         restarts[bad] = attempt + 1
     last = np.full(runs, batch.windows[-1].last)
-    unclear = np.flatnonzero(_gap(best, other) < _TOLD_APART)
+    gap = _gap(best, other)
+    unclear = np.flatnonzero((gap < _TOLD_APART) | _vague(best))
     if len(unclear) and batch.extended:
-        _extend(task, best, other, unclear)
+        _extend(task, best, other, unclear, gap)
         last[unclear] = batch.extended[-1].last
     return _handed_on(task, best, _gap(best, other), last, restarts)
 
@@ -119,7 +122,15 @@ def _solve(task: _Problem, parameters: Array) -> tuple[Fit, Fit]:
     model, batch = task.model, task.batch
     at, prior = fresh(model, parameters, task.prior)
     best = fit(model, task.sights, at, prior, batch.windows, batch.iterations, batch.robust)
-    return _ordered(best, _mirrored(task, best))
+    best, other = _ordered(best, _mirrored(task, best, batch.windows[2::2]))
+    bad = np.flatnonzero(~(best.ratio < batch.limit))
+    if len(bad) and batch.mirrored:
+        part, wrong = task.of(bad), best.of(bad)
+        for old, new in zip(
+            (best, other), _ordered(wrong, _mirrored(part, wrong, batch.windows[1::2]))
+        ):
+            old.put(bad, new)
+    return best, other
 
 
 def _ordered(best: Fit, other: Fit) -> tuple[Fit, Fit]:
@@ -131,7 +142,7 @@ def _ordered(best: Fit, other: Fit) -> tuple[Fit, Fit]:
     return best, other
 
 
-def _mirrored(task: _Problem, best: Fit) -> Fit:
+def _mirrored(task: _Problem, best: Fit, windows: Sequence[Window]) -> Fit:
     """Fit that begins at the mirror; where it is hopeless, it ends early, with infinite cost."""
     batch = task.batch
     runs = np.arange(len(best.ratio))
@@ -141,8 +152,7 @@ def _mirrored(task: _Problem, best: Fit) -> Fit:
         return result
     parameters, points = task.model.mirror(best.at.parameters, best.at.points)
     at = Unknowns(parameters, points, best.at.placed.copy())
-    windows = dict.fromkeys([*batch.windows[2::2]])
-    for window in windows:
+    for window in dict.fromkeys([*windows, batch.windows[-1]]):
         part = task.of(runs)
         found = fit(
             *(part.model, part.sights, at, take(best.prior, runs)),
@@ -158,18 +168,27 @@ def _mirrored(task: _Problem, best: Fit) -> Fit:
     return result
 
 
-def _extend(task: _Problem, best: Fit, other: Fit, runs: IntArray) -> None:
-    """Let longer windows decide between mirrors that the usual ones do not tell apart."""
-    part, batch = task.of(runs), task.batch
-    fits = [
-        fit(
-            *(part.model, part.sights, old.of(runs).at, old.of(runs).prior),
-            *(batch.extended, batch.iterations, batch.robust),
-        )
-        for old in (best, other)
-    ]
-    for old, new in zip((best, other), _ordered(*fits)):
-        old.put(runs, new)
+def _extend(task: _Problem, best: Fit, other: Fit, runs: IntArray, gap: Array) -> None:
+    """Go on with longer windows, from both mirrors where both are still there."""
+    batch = task.batch
+    for old, chosen in ((best, runs), (other, runs[np.isfinite(gap[runs])])):
+        if len(chosen):
+            part, begin = task.of(chosen), old.of(chosen)
+            found = fit(
+                *(part.model, part.sights, begin.at, begin.prior),
+                *(batch.extended, batch.iterations, batch.robust),
+            )
+            old.put(chosen, found)
+    _ordered(best, other)
+
+
+def _vague(best: Fit) -> BoolArray:
+    """Whether the points are known too badly, beside their size, for a filter to go on from."""
+    n_x = best.at.parameters.shape[-1]
+    variance = np.diagonal(scaled_inverse(best.found.information), 0, -2, -1)[:, n_x:]
+    there = np.repeat(_confirmed(best), 3, axis=-1)
+    square = (best.at.points.reshape(variance.shape) ** 2 * there).sum(-1)
+    return np.asarray((variance * there).sum(-1) > _VAGUE**2 * square)
 
 
 def _gap(best: Fit, other: Fit) -> Array:
@@ -201,7 +220,7 @@ def _handed_on(
     covariance = batch.inflation * scaled_inverse(best.found.information)
     status = np.where(gap < _TOLD_APART, StartStatus.AMBIGUOUS, StartStatus.FOUND)
     status = np.where(best.ratio < batch.limit, status, StartStatus.REJECTED)
-    present = _confirmed(task, best)
+    present = _confirmed(best)
     n_c, n_x = freedom.shape[-2:]
     whole = np.zeros((len(core), n_c + covariance.shape[-1] - n_x, covariance.shape[-1]))
     whole[:, :n_c, :n_x] = freedom
@@ -212,7 +231,7 @@ def _handed_on(
     )
 
 
-def _confirmed(task: _Problem, best: Fit) -> BoolArray:
+def _confirmed(best: Fit) -> BoolArray:
     """Landmarks of which most sightings agree with the fit."""
     seen, agreeing = best.found.sightings, best.found.agreeing
     enough = (agreeing > _CONFIRMED_SHARE * seen) & (seen >= _CONFIRMED_SIGHTS)

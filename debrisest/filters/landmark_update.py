@@ -30,10 +30,11 @@ class Rule(NamedTuple):
 
 
 class Frame(NamedTuple):
-    """Figures of a frame: NIS, components used (run,), and which landmarks were accepted."""
+    """Figures of a frame, (run,) each, and which landmarks were accepted, (run, N)."""
 
     nis: Array
     dof: IntArray
+    rejected: IntArray
     accepted: BoolArray
     iterations: IntArray
 
@@ -44,6 +45,15 @@ class _Linear(NamedTuple):
     innovation: Array
     response: Array
     noise: Array
+
+
+class _Step(NamedTuple):
+    """``P H^T``, S, the gain, and the correction of the prior's state."""
+
+    cross: Array
+    total: Array
+    gain: Array
+    correction: Array
 
 
 def update(
@@ -63,38 +73,48 @@ def update(
     """
     linear = _linearise(model, prior.core, prior.points, sights, k, inflation)
     used, accepted = _gated(model, prior, sights, linear, rule)
-    cross, total, gain, innovation = _gain(prior, linear, used)
-    nis = (innovation * solve(total, innovation[..., None])[..., 0]).sum(-1)
-    correction = (gain @ innovation[..., None])[..., 0]
-    core, points = _moved(model, prior, correction)
-    sigma = np.sqrt(np.maximum(np.diagonal(prior.covariance, 0, -2, -1), 0.0))
-    last, moving = np.zeros_like(correction), used.any(-1)
-    count = np.ones(len(core), dtype=np.int64)
+    rejected = sights.seen.sum((-2, -1)) + sights.common_seen.sum(-1) - used.sum(-1)
+    step = _gauss_newton(prior, linear, used)
+    innovation = np.where(used, linear.innovation, 0.0)
+    nis = (innovation * solve(step.total, innovation[..., None])[..., 0]).sum(-1)
+    count = _iterate(model, prior, sights, k, rule, inflation, used, step)
+    core, points = _moved(model, prior, step.correction)
+    change = step.gain @ np.swapaxes(step.cross - 0.5 * step.gain @ step.total, -1, -2)
+    covariance = prior.covariance - change - np.swapaxes(change, -1, -2)
+    return Belief(core, points, covariance), Frame(nis, used.sum(-1), rejected, accepted, count)
+
+
+def _iterate(
+    model: LandmarkModel,
+    prior: Belief,
+    sights: Sights,
+    k: int,
+    rule: Rule,
+    inflation: float,
+    used: BoolArray,
+    step: _Step,
+) -> IntArray:
+    """Go on from the first step, changed in place, until no run moves; number of steps (run,)."""
+    last, moving = np.zeros_like(step.correction), np.asarray(used.any(-1))
+    count = np.ones(len(moving), dtype=np.int64)
+    variance = np.diagonal(prior.covariance, 0, -2, -1)
     for _ in range(rule.iterations - 1):
-        left = np.sqrt(np.maximum(_variance(prior, cross, gain), 1e-12 * sigma**2))
-        moving = moving & (np.abs(correction - last) > rule.tolerance * left).any(-1)
+        left = variance - (step.cross * step.gain).sum(-1)
+        sigma = np.sqrt(np.maximum(left, 1e-12 * np.abs(variance)))
+        moving = moving & (np.abs(step.correction - last) > rule.tolerance * sigma).any(-1)
         if not moving.any():
             break
+        core, points = _moved(model, prior, step.correction)
         linear = _linearise(model, core, points, sights, k, inflation)
-        lag = np.concatenate(
-            [
-                model.difference(prior.core, core),
-                (prior.points - points).reshape(len(core), -1),
-            ],
-            axis=-1,
-        )
-        shifted = linear.innovation - (linear.response @ lag[..., None])[..., 0]
-        new = _gain(prior, linear._replace(innovation=shifted), used)
-        for kept, values in zip((cross, total, gain), new):
+        shift = (prior.points - points).reshape(len(core), -1)
+        lag = np.concatenate([model.difference(prior.core, core), shift], axis=-1)
+        residual = linear.innovation - (linear.response @ lag[..., None])[..., 0]
+        new = _gauss_newton(prior, linear._replace(innovation=residual), used)
+        last = step.correction.copy()
+        for kept, values in zip(step, new):
             kept[moving] = values[moving]
-        last = correction.copy()
-        correction[moving] = (new[2] @ new[3][..., None])[moving, :, 0]
-        core, points = _moved(model, prior, correction)
         count += moving
-    half = cross - 0.5 * gain @ total
-    change = gain @ np.swapaxes(half, -1, -2)
-    covariance = prior.covariance - change - np.swapaxes(change, -1, -2)
-    return Belief(core, points, covariance), Frame(nis, used.sum(-1), accepted, count)
+    return count
 
 
 def _linearise(
@@ -131,7 +151,7 @@ def _gated(
     """Components to use (run, m), and landmarks seen that passed (run, N)."""
     runs, landmarks, each = sights.seen.shape
     seen = np.concatenate([sights.seen.reshape(runs, -1), sights.common_seen], axis=-1)
-    shown = sights.seen.any(-1)
+    shown: BoolArray = np.asarray(sights.seen.any(-1))
     if rule.false_alarm is None or not shown.any():
         return seen, shown
     first = np.arange(landmarks * each).reshape(landmarks, each)
@@ -142,7 +162,9 @@ def _gated(
         linear.innovation[:, first][..., None, :],
         blocks + linear.noise[:, first[:, :, None], first[:, None, :]],
     )
-    squares = (nu * solve(blocks.reshape(-1, each, each), nu.reshape(-1, each, 1)).reshape(nu.shape)).sum(-1)
+    squares = (
+        nu * solve(blocks.reshape(-1, each, each), nu.reshape(-1, each, 1)).reshape(nu.shape)
+    ).sum(-1)
     limits = 2.0 * gammainccinv(0.5 * np.maximum(np.arange(each + 1), 1), rule.false_alarm)
     accepted: BoolArray = shown & (squares <= limits[sights.seen.sum(-1)])
     used = seen.copy()
@@ -165,21 +187,16 @@ def _blocks(model: LandmarkModel, prior: Belief, linear: _Linear, first: IntArra
     )
 
 
-def _gain(
-    prior: Belief, linear: _Linear, used: BoolArray
-) -> tuple[Array, Array, Array, Array]:
-    """``P H^T``, ``S``, the gain and the innovation, without what is not used."""
-    innovation, response, noise = linear.innovation, np.swapaxes(linear.response, -1, -2), linear.noise
+def _gauss_newton(prior: Belief, linear: _Linear, used: BoolArray) -> _Step:
+    """Step from the prior, without what is not used."""
+    innovation, noise = linear.innovation, linear.noise
+    response = np.swapaxes(linear.response, -1, -2)
     if not used.all():
         innovation, response, noise = drop_missing(used, innovation, response, noise)
     cross = prior.covariance @ response
     total = np.swapaxes(response, -1, -2) @ cross + noise
     gain = np.swapaxes(solve(total, np.swapaxes(cross, -1, -2)), -1, -2)
-    return cross, total, gain, innovation
-
-
-def _variance(prior: Belief, cross: Array, gain: Array) -> Array:
-    return np.diagonal(prior.covariance, 0, -2, -1) - (cross * gain).sum(-1)
+    return _Step(cross, total, gain, (gain @ innovation[..., None])[..., 0])
 
 
 def _moved(model: LandmarkModel, prior: Belief, correction: Array) -> tuple[Array, Array]:

@@ -39,7 +39,8 @@ class PointingControl(SimulationPart):
     gives = (
         *("true_q_ic", "true_euler", "section", "true_pixel", "cameras_at_start"),
         *("pointing_status", "control_time_s", "torque", "control_pixel"),
-        *("settling_time", "stage_one_time", "peak_torque", "total_variation", "final_angle"),
+        *("first_section", "settling_time", "stage_one_time"),
+        *("peak_torque", "total_variation", "final_angle"),
     )
     kind: Literal["pointing_control"]
     inertia_kg_m2: Annotated[list[Vector3], Field(min_length=3, max_length=3)]

@@ -37,9 +37,10 @@ def history(happened: Pointing, clock: Clock, every: int) -> Data:
 
 
 def scalars(happened: Pointing, clock: Clock) -> Data:
-    """Of the first control section, the worst of the satellites; NaN where there is none."""
+    """When the first control section begins, and of it the worst satellite; NaN without one."""
     metrics = section_metrics(happened, 1, clock.step)
     return {
+        "first_section": metrics.start,
         "settling_time": metrics.settling_time.max(-1),
         "stage_one_time": metrics.stage_one_time.max(-1),
         "peak_torque": metrics.peak_torque.max(-1),

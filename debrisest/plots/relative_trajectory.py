@@ -1,5 +1,7 @@
 """The chaser's path about its target, true and estimated (Volpe et al. 2017, Fig. 9c)."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -14,7 +16,7 @@ DATASETS = ("relative_position_h", "chaser_position_h")
 
 @styled
 def relative_trajectory(data: Data, context: str) -> Figure:
-    """Draw ``relative_position_h`` (time, 3) over ``chaser_position_h``, the target at (0, 0, 0)."""
+    """Draw ``relative_position_h`` (time, 3) over ``chaser_position_h``, target at the origin."""
     true, estimated = data["chaser_position_h"], data["relative_position_h"]
     figure = Figure(figsize=(WIDTH, 5.6))
     top, axes = spatial_axes(figure, ("radial", "along track", "normal"))
@@ -29,7 +31,7 @@ def relative_trajectory(data: Data, context: str) -> Figure:
 
 
 def _handles() -> list[Line2D]:
-    mark = {"linestyle": "", "color": INK, "markersize": 5}
+    mark: dict[str, Any] = {"linestyle": "", "color": INK, "markersize": 5}
     return [
         Line2D([], [], color=VERMILION, label="estimated"),
         Line2D([], [], label="truth", **TRUTH),

@@ -1,5 +1,7 @@
 """True and estimated points of one run at its end (Volpe et al. 2017, Fig. 7)."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -10,9 +12,9 @@ from debrisest.plots.axes import heading, legend_below
 from debrisest.plots.space import same_scale, spatial_axes
 from debrisest.plots.style import BLUE, INK, VERMILION, WIDTH, styled
 
-_TRUE = {"marker": "o", "markersize": 6.0, "color": BLUE, "markerfacecolor": "none"}
-_ESTIMATED = {"marker": "x", "markersize": 5.0, "color": VERMILION}
-_ALIGNED = {"marker": ".", "markersize": 4.0, "color": INK}
+_TRUE: dict[str, Any] = {"marker": "o", "markersize": 6.0, "color": BLUE, "markerfacecolor": "none"}
+_ESTIMATED: dict[str, Any] = {"marker": "x", "markersize": 5.0, "color": VERMILION}
+_ALIGNED: dict[str, Any] = {"marker": ".", "markersize": 4.0, "color": INK}
 DATASETS = ("point_b", "reference_point_b")
 
 
@@ -40,7 +42,7 @@ def _last(points: Array) -> Array:
     """Return the last estimate (feature, 3) of every point (time, feature, 3) that has one."""
     known = np.isfinite(points).all(-1)
     last = np.where(known, np.arange(len(points))[:, None], 0).max(axis=0)
-    return points[last, np.arange(points.shape[1])]
+    return np.asarray(points[last, np.arange(points.shape[1])])
 
 
 def _handles() -> list[Line2D]:

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from mpl_toolkits.mplot3d import Axes3D
 
 from debrisest.arrays import Array
 from debrisest.plots.style import GREY, SHADE
@@ -14,8 +13,8 @@ _NO_HEIGHT = 1e-3
 _TICKS = 5
 
 
-def spatial_axes(figure: Figure, names: tuple[str, str, str]) -> tuple[Axes, Axes3D]:
-    """Return axes that only carry the heading, and below them axes in metres."""
+def spatial_axes(figure: Figure, names: tuple[str, str, str]) -> tuple[Axes, Any]:
+    """Return axes that only carry the heading, and below them spatial axes in metres."""
     grid = figure.add_gridspec(2, 1, height_ratios=(_NO_HEIGHT, 1.0))
     top = figure.add_subplot(grid[0])
     top.set_axis_off()
@@ -25,11 +24,10 @@ def spatial_axes(figure: Figure, names: tuple[str, str, str]) -> tuple[Axes, Axe
         axis.set_pane_color("white")
         axis.line.set_color(GREY)
         axis._axinfo["grid"].update(color=SHADE, linewidth=0.5)
-    assert isinstance(axes, Axes3D)
     return top, axes
 
 
-def same_scale(axes: Axes3D, points: Array) -> None:
+def same_scale(axes: Any, points: Array) -> None:
     """Show all of ``points (n, 3)`` with a metre as long along every axis."""
     finite = points[np.isfinite(points).all(-1)]
     if not len(finite):

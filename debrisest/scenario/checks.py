@@ -28,8 +28,7 @@ def scenario_problems(scenario: Scenario) -> Found:
         return
     if abs(epochs - round(epochs)) > 1e-9 * epochs:
         yield ("duration_s",), f"must be a whole number of steps of {scenario.step_s:g} s"
-    lacking = list(_parts_that_lack_data(scenario))
-    yield from lacking or _parts_that_refuse(scenario)
+    yield from _parts_that_lack_data(scenario)
     yield from _windows(scenario)
 
 
@@ -44,6 +43,8 @@ def file_problems(cases: Mapping[str, Scenario]) -> Found:
         if scenario.tables != first.tables:
             yield ("cases", name, "tables"), "tables belong to the whole file, not to a case"
     yield from _unknown_cases(first, list(cases))
+    refused = (found for scenario in cases.values() for found in _parts_that_refuse(scenario))
+    yield from dict.fromkeys(refused)
     for index, table in enumerate(first.tables.layout):
         if table.stage == "simulate":
             yield from _not_simulated(("tables", "layout", index, "quantities"), table, cases)

@@ -17,7 +17,7 @@ from debrisest.scenario.schema import Table, Tables
 from debrisest.tables.published import CellKey, Published, published_values
 from debrisest.tables.results import Result
 from debrisest.tables.verdict import Verdict, consistency, interval_meets, verdict
-from debrisest.vocabulary import VOCABULARY, table_scale
+from debrisest.vocabulary import TWO_SIDED, VOCABULARY, table_scale
 
 COLUMNS = [
     *("table", "case", "estimator", "quantity", "unit", "statistic", "window"),
@@ -108,16 +108,18 @@ def _row(
         "published": published.value if published else None,
         **found,
         "bound": bound["measured"] if bound else np.nan,
-        "verdict": str(_said(found, published)),
+        "verdict": str(_said(key.quantity, found, published)),
     }
 
 
-def _said(found: Mapping[str, Any], published: Published | None) -> Verdict:
+def _said(quantity: str, found: Mapping[str, Any], published: Published | None) -> Verdict:
     lost = (found["diverged"] + found["failed"]) / found["runs"]
     if published is None:
         interval = found["consistent_low"], found["consistent_high"]
         return consistency(found["measured"], *interval, lost)
-    return verdict(found["measured"], published.value, published.factor, lost)
+    said = verdict(found["measured"], published.value, published.factor, lost)
+    off = quantity in TWO_SIDED and said in (Verdict.BETTER, Verdict.WORSE)
+    return Verdict.NOT_REPRODUCED if off else said
 
 
 def _measured(

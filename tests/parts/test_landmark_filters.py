@@ -1,0 +1,155 @@
+"""The estimators of pose and shape as a scenario names them, on a short simulated case."""
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.draws import Draws
+from debrisest.dynamics.relative_motion import hill_frame
+from debrisest.parts.camera_range_sensors import CameraRange
+from debrisest.parts.first_image import FirstImage
+from debrisest.parts.landmark_filters import LandmarkBatch, LandmarkBound, LandmarkFilter
+from debrisest.parts.motions import GravityGradient
+from debrisest.parts.orbits import KeplerOrbit
+from debrisest.parts.relative_ellipse import ClosedEllipse
+from debrisest.parts.shape_guess import Guessed, ShapeGuess
+from debrisest.parts.targets import RigidPoints
+from debrisest.problems.camera_range_minimal import CameraRangeMinimal
+from debrisest.roles import Given
+
+CLOCK = Clock(300.0, 5.0)
+WINDOWS = {"windows_s": [50, 100, 200, 900], "spacing_s": [5, 5, 5, 5], "extended_s": []}
+CORNERS = [[x, y, z] for x in (1, -1) for y in (0.75, -0.75) for z in (0.5, -0.5)]
+POINTS = [*CORNERS, [0.35, 2, 0.1], [0, -0.3, 0.9]]
+
+
+@pytest.fixture(scope="module")
+def data():
+    parts = [
+        RigidPoints(
+            kind="rigid_points",
+            inertia_kg_m2=[135.4, 208.3, 260.4],
+            points={f"p{i}": {"position_m": p, "normal": p} for i, p in enumerate(POINTS)},
+        ),
+        KeplerOrbit(kind="kepler", semi_major_axis_km=7000.0),
+        GravityGradient(kind="gravity_gradient", rate_deg_s=[0.6, 0.4, 1.0]),
+        ClosedEllipse(
+            kind="closed_ellipse",
+            position_m=[5, 17.3205081, 5.90884652],
+            velocity_m_s=[9.3358198e-3, -1.078007613e-2, -1.12316e-3],
+        ),
+        CameraRange(kind="camera_range"),
+        ShapeGuess(kind="shape_guess"),
+    ]
+    draws = Draws(1, "short", range(3))
+    found = {"time_s": CLOCK.times}
+    for part in parts:
+        found |= part.simulate(found, CLOCK, draws)
+    return found
+
+
+def problem(**keys) -> CameraRangeMinimal:
+    return CameraRangeMinimal(kind="camera_range_minimal", **keys)
+
+
+def run(data, chosen, algorithm, start=None):
+    start = start or FirstImage(kind="first_image")
+    state, covariance = chosen.pack(*start.start(data, CLOCK))
+    given = Given(state, covariance, chosen.measurements(data), CLOCK, chosen.truth(data))
+    return algorithm.run(chosen.model(data, CLOCK), given)
+
+
+def assessed(data, chosen, filtered):
+    estimated = chosen.unpack(filtered)
+    times = {"covariance_time_s": CLOCK.times[filtered.kept], "covariance": filtered.covariance}
+    told = {"nis": filtered.nis, "nis_dof": filtered.nis_dof}
+    return chosen.assess(data | estimated | times | told | filtered.counts, (0.0, 300.0))
+
+
+def test_the_truth_is_that_of_the_camera_at_time_zero(data) -> None:
+    truth = problem().truth(data)
+    to_hill = hill_frame(data["orbit_position"], data["orbit_velocity"])
+    body = (
+        quaternion.to_matrix(data["true_q_ib"])[:, :, None]
+        @ data["true_point_b"][:, None, :, :, None]
+    )
+    in_hill = (np.swapaxes(to_hill, -1, -2)[:, :, None] @ body)[..., 0]
+    points = truth[:, :, 18:].reshape(3, 60, -1, 3)
+    found = quaternion.rotate(truth[:, :, None, :4], points)
+    np.testing.assert_allclose(found, in_hill, atol=1e-9)
+    np.testing.assert_allclose(truth[:, 0, :4], data["true_q_hc"][:, 0], atol=1e-12)
+
+
+def test_the_first_image_gives_the_direction(data) -> None:
+    guess, _ = FirstImage(kind="first_image").start(data, CLOCK)
+    position = guess["relative_position_h"]
+    np.testing.assert_allclose(
+        np.linalg.norm(position, axis=-1), data["measured_range"][:, 0], rtol=1e-12
+    )
+    error = np.linalg.norm(position - data["chaser_position_h"][:, 0], axis=-1)
+    assert (error < 1.0).all()  # m: the middle of the points is not the centre of mass
+    drawn, _ = Guessed(kind="guessed").start(data, CLOCK)
+    np.testing.assert_array_equal(guess["rate_b"], drawn["rate_b"])
+
+
+def test_batch_bound_and_filter_give_errors_in_order(data) -> None:
+    batch = LandmarkBatch(kind="landmark_batch", **WINDOWS)
+    bound = LandmarkBound(kind="landmark_bound")
+    best = run(data, problem(), batch)
+    assert best.status.tolist() == ["finished"] * 3
+    assert np.isfinite(best.state).all()
+    least = run(data, problem(), bound)
+    scores = [assessed(data, problem(), found) for found in (best, least)]
+    for name in ("position", "velocity", "rate", "points"):
+        ratio = np.median(scores[0][name][:, -1]) / np.median(scores[1][name][:, -1])
+        assert 0.3 < ratio < 3.0, name
+    sigma = [found.sigma[:, -1, 3:17].mean(0) for found in (best, least)]
+    assert (sigma[0] > sigma[1]).all()
+    free = problem(gauge_sigma_deg=5)
+    online = assessed(data, free, run(data, free, LandmarkFilter(kind="landmark_filter")))
+    assert np.median(online["aligned_points"][:, -1]) < 0.05
+
+
+def test_sigmas_are_named_like_the_estimates(data) -> None:
+    chosen = problem(range_to="bias", camera_bias_sigma_deg=0.02)
+    short = {"windows_s": [50], "spacing_s": [5], "extended_s": [], "mirrored": False}
+    settings = LandmarkBatch(kind="landmark_batch", restarts=0, **short)
+    found = chosen.unpack(run(data, chosen, settings))
+    assert found["range_bias"].shape == (3, 60)
+    assert found["camera_bias"].shape == found["camera_bias_sigma"].shape == (3, 60, 3)
+    assert found["q_hb"].shape[-1] == 4
+    for name in ("rate_b", "relative_position_h", "log_inertia", "point_b", "range_bias"):
+        assert found[name].shape == found[f"{name}_sigma"].shape
+
+
+def test_a_run_that_does_not_fit_says_so(data) -> None:
+    surface = data | {"measured_range": data["measured_range"] - 1.0}
+    settings = {"windows_s": [50, 100, 150], "spacing_s": [5, 5, 5], "extended_s": []}
+    batch = LandmarkBatch(kind="landmark_batch", restarts=0, mirrored=False, **settings)
+    wild = surface["image_point"].copy()
+    wild[:, 40:] += 4.0 * np.random.default_rng(0).normal(size=wild[:, 40:].shape)
+    status = run(surface | {"image_point": wild}, problem(), batch).status
+    assert all("finished, but" in words or "rejected" in words for words in status)
+
+
+def test_the_bound_needs_a_truth(data) -> None:
+    chosen = problem()
+    state, covariance = chosen.pack(*Guessed(kind="guessed").start(data, CLOCK))
+    given = Given(state, covariance, chosen.measurements(data), CLOCK)
+    with pytest.raises(ValueError, match="linearised at the truth"):
+        LandmarkBound(kind="landmark_bound").run(chosen.model(data, CLOCK), given)
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"windows_s": [50, 100]}, "as many entries"),
+        ({"windows_s": [], "spacing_s": []}, "at least one"),
+        ({"windows_s": [100, 50], "spacing_s": [5, 5]}, "must grow"),
+    ],
+)
+def test_windows_that_make_no_sense(keys: dict, words: str) -> None:
+    with pytest.raises(ValidationError, match=words):
+        LandmarkBatch(kind="landmark_batch", **keys)
