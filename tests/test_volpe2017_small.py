@@ -24,7 +24,7 @@ def shortened(text: str) -> dict:
         "runs": RUNS,
         "duration_s": DURATION,
         "estimators": {"reproduction": scenario["estimators"]["reproduction"] | {"cases": CASES}},
-        "cases": {name: scenario["cases"][name] for name in CASES},
+        "cases": {name: _changes(scenario["cases"][name]) for name in CASES},
         "tables": {
             "layout": [
                 table
@@ -36,6 +36,10 @@ def shortened(text: str) -> dict:
             ]
         },
     }
+
+
+def _changes(case: dict) -> dict:
+    return {key: value for key, value in case.items() if key != "estimators"}
 
 
 @pytest.fixture(scope="module")

@@ -49,6 +49,12 @@ class Kind(NamedTuple):
     of_each_case: bool = False
     of_simulation: bool = False
     also: tuple[str, ...] = ()
+    not_with: tuple[str, ...] = ()
+    """Datasets of problems whose axes are not those that the figure speaks of."""
+
+    def suits(self, data: Data) -> bool:
+        """Return whether a run has what the figure needs."""
+        return set(self.needs) <= set(data) and not set(self.not_with) & set(data)
 
 
 FIGURES: dict[str, Kind] = {
@@ -56,7 +62,7 @@ FIGURES: dict[str, Kind] = {
     "recovered_quaternion": Kind(
         recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
     ),
-    "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma", "moments_b")),
+    "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma"), not_with=("relative_position_h",)),
     "error_over_time": Kind(
         error_over_time.error_over_time, error_over_time.QUANTITIES, of_all_runs=True
     ),
@@ -115,7 +121,7 @@ def _sources(
     for source in single_runs(scenario, steps, results):
         for name, kind in FIGURES.items():
             of_one_run = not kind.of_all_runs and not kind.of_simulation
-            if of_one_run and set(kind.needs) <= set(source.data):
+            if of_one_run and kind.suits(source.data):
                 yield name, source
     for source in simulations(scenario, steps):
         for name, kind in FIGURES.items():

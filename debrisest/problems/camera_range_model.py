@@ -1,9 +1,10 @@
 """Camera and range finder near a tumbling target of unknown shape: the minimal state.
 
-The core is ``[q_hb 4 | w 3 | rho 3 | v 3 | s 5 | extra]``: attitude of the body relative to the Hill
-frame, inertial rate in body axes, chaser relative to target in the Hill frame, and log-ratios of
-the inertia; its errors have a rotation vector theta in body axes in place of the quaternion. Behind
-it come the points ``p_i`` in body axes, which are the camera's axes at time zero by definition.
+The core is ``[q_hb 4 | w 3 | rho 3 | v 3 | s 5 | extra]``: attitude of the body relative to the
+Hill frame, inertial rate in body axes, chaser relative to target in the Hill frame, log-ratios of
+the inertia, and constants of the sensors; its errors have a rotation vector theta in body axes in
+place of the quaternion. Behind it come the points ``p_i`` in body axes, which are the camera's axes
+at time zero by definition.
 
 A point lies at ``r_i = R_ch (R_hb p_i - rho)`` in the camera (Volpe et al. 2017, Eq 14, with the
 points of the body in place of their redundant copies in the camera's axes). The camera's attitude
@@ -44,8 +45,8 @@ class Setup(NamedTuple):
 
     camera: Array
     """Known ``R_hc (run, time, 3, 3)``."""
-    ranged: Array
-    """Which landmark the range is measured to, (run, time, N) of zeros and ones."""
+    points: int
+    """Number of landmarks."""
     mean_motion: float
     step: float
     focal: float
@@ -60,25 +61,17 @@ class Setup(NamedTuple):
     """Whether a constant error of the known attitude is estimated."""
     depth_sigma: float = 1.5
     """Half the target's depth along the line of sight, 1 sigma, m."""
-
-    @property
-    def points(self) -> int:
-        """Number of landmarks."""
-        return self.ranged.shape[-1]
-
-    @property
-    def range_bias(self) -> slice:
-        """Where the range's bias is, among the extra components."""
-        return slice(0, 1 if self.range_model == "bias" else 0)
+    gravity_gradient: bool = True
+    """Whether the Earth turns the target."""
 
     @property
     def extras(self) -> int:
-        """Number of constants beside the inertia: the range's bias, the camera's three."""
-        return self.range_bias.stop + 3 * self.camera_bias
+        """Number of constants behind the inertia: the range's bias, the camera's three."""
+        return int(self.range_model == "bias") + 3 * int(self.camera_bias)
 
     def of(self, runs: IntArray) -> "Setup":
         """Return the setup of some runs."""
-        return self._replace(camera=self.camera[runs], ranged=self.ranged[runs])
+        return self._replace(camera=self.camera[runs])
 
 
 def error_names(known: Setup) -> tuple[str, ...]:
@@ -142,10 +135,12 @@ def trajectory(known: Setup, core: Array, last: int) -> tuple[Array, Array]:
     rates, radials = (np.empty((len(core), last, 4, 3)) for _ in range(2))
     products = tumbling_in_orbit.torque_products(shape)
     for k in range(last):
-        q, w, stages = tumbling_in_orbit.step(q, w, shape, n, known.step, products)
+        q, w, stages = tumbling_in_orbit.step(
+            q, w, shape, n, known.step, products, known.gravity_gradient
+        )
         rates[:, k], radials[:, k] = stages
         cores[:, k + 1, Q], cores[:, k + 1, RATE] = q, w
-    centre = clohessy_wiltshire.transition(n, known.step * np.arange(last + 1))
+    centre = clohessy_wiltshire.transition(n, known.step * np.arange(last + 1.0))
     moving = slice(POSITION.start, VELOCITY.stop)
     cores[..., moving] = (centre @ core[:, None, moving, None])[..., 0]
     steps = tumbling_in_orbit.sensitivity(
@@ -153,6 +148,7 @@ def trajectory(known: Setup, core: Array, last: int) -> tuple[Array, Array]:
         tumbling_in_orbit.Body(*(part[:, None] for part in shape)),
         n,
         known.step,
+        known.gravity_gradient,
     )
     return cores, _transitions(known, _composed(steps), centre)
 
@@ -163,12 +159,12 @@ def process(known: Setup, core: Array) -> tuple[Array, Array]:
     n, step = known.mean_motion, known.step
     moved = core.copy()
     moved[..., Q], moved[..., RATE], stages = tumbling_in_orbit.step(
-        core[..., Q], core[..., RATE], shape, n, step
+        core[..., Q], core[..., RATE], shape, n, step, gravity=known.gravity_gradient
     )
     centre = clohessy_wiltshire.transition(n, step)
     moving = slice(POSITION.start, VELOCITY.stop)
-    moved[..., moving] = core[..., moving] @ centre.T
-    turning = tumbling_in_orbit.sensitivity(stages, shape, n, step)
+    moved[..., moving] = (centre @ core[..., moving, None])[..., 0]
+    turning = tumbling_in_orbit.sensitivity(stages, shape, n, step, known.gravity_gradient)
     return moved, _transitions(known, turning, centre)
 
 

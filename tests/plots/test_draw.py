@@ -78,7 +78,7 @@ def _made_up(stage: str, runs: int) -> Data:
     names = {
         "simulate": ["true_position"],
         "recover": ["raw_q_if", "q_if", "piece", "sign"],
-        "filter": ["rate_b", "rate_b_sigma"],
+        "filter": ["rate_b", "rate_b_sigma", "moments_b"],
         "assess": ["rate", *QUANTITIES],
     }[stage]
     data = {name: _dataset(name, runs, 0.0) for name in names}
