@@ -20,8 +20,8 @@ from debrisest.parts.leader_motion import SeenFromLeader
 from debrisest.parts.motions import GravityGradient, TorqueFree
 from debrisest.parts.observers import Drift, Hold
 from debrisest.parts.orbits import KeplerOrbit, PerturbedOrbit
-from debrisest.parts.random_box import RandomBox
 from debrisest.parts.pointing import PointingControl
+from debrisest.parts.random_box import RandomBox
 from debrisest.parts.random_target import RandomPoints
 from debrisest.parts.random_tumble import RandomTumble
 from debrisest.parts.recoveries import BasisPursuit

@@ -57,6 +57,8 @@ Cluster = Annotated[
     str | None, typer.Option("--executor", help="Run on a cluster: dask:tcp://HOST:PORT.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress.")]
+Check = Annotated[bool, typer.Option("--check", help="Exit 1 on unexpected verdicts.")]
+Unprinted = Annotated[bool, typer.Option("--quiet", help="Write files, print nothing about them.")]
 _RESULTS = Path("results")
 
 
@@ -101,7 +103,7 @@ def sweep(
     force: Force = False,
     cluster: Cluster = None,
     quiet: Quiet = False,
-    check: Annotated[bool, typer.Option("--check", help="Exit 1 on unexpected verdicts.")] = False,
+    check: Check = False,
 ) -> None:
     """Do everything for all cases, then write and print the tables."""
     selection = _selection(runs, case, estimator, force, "assess")
@@ -121,7 +123,8 @@ def table(
     estimator: EstimatorNames = None,
     settings: Settings = None,
     form: Annotated[Format, typer.Option("--format", help="How to print.")] = Format.RICH,
-    check: Annotated[bool, typer.Option("--check", help="Exit 1 on unexpected verdicts.")] = False,
+    check: Check = False,
+    quiet: Unprinted = False,
 ) -> None:
     """Write and print the tables of the results that are up to date."""
     from debrisest.plan import check_selection
@@ -129,7 +132,7 @@ def table(
     selection = _selection(runs, case, estimator, False, "assess")
     scenarios = _loaded(configs, settings)
     _told(partial(check_selection, scenarios, selection))
-    _exit(_show_tables(scenarios, out, selection, form, check))
+    _exit(_show_tables(scenarios, out, selection, None if quiet else form, check))
 
 
 @app.command()
@@ -140,6 +143,7 @@ def plot(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    quiet: Unprinted = False,
 ) -> None:
     """Draw the figures of the results that are up to date, as PNG and SVG."""
 
@@ -154,7 +158,8 @@ def plot(
             if not set(scenario.cases) & set(selection.cases or scenario.cases):
                 continue
             for path in draw_all(scenario, out, selection):
-                print(path)
+                if not quiet:
+                    print(path)
 
     _told(draw)
 
@@ -223,10 +228,10 @@ def _show_tables(
     scenarios: list["LoadedScenario"],
     out: Path,
     selection: "Selection",
-    form: Format,
+    form: Format | None,
     check: bool,
 ) -> bool:
-    """Write and print all tables; return whether a verdict was not the expected one."""
+    """Write all tables, print them in a format; return whether a verdict is not as expected."""
     from debrisest.sweep import chosen, tabulate, write_tables
     from debrisest.tables.cells import unexpected
     from debrisest.tables.render import render_all
@@ -243,7 +248,7 @@ def _show_tables(
             write_tables(scenario, out, rows)
             shown.append((scenario, chosen(rows, selection, means)))
         wrong += unexpected(scenario, rows, partial(selection.asks_for, means=means))
-    if shown:
+    if shown and form is not None:
         print(render_all(shown, form), end="")
     if check:
         for sentence in wrong:

@@ -164,6 +164,11 @@ class ProblemPart(Part):
 class FilterPart(Part):
     """A filter algorithm and its settings; it needs the kind of model that a problem gives."""
 
+    @property
+    def kept_s(self) -> list[float] | None:
+        """Return when covariances are kept beside the last epoch's; None: the part does not say."""
+        return getattr(self, "keep_s", None)
+
     @abstractmethod
     def run(self, model: Any, given: Given) -> Filtered:
         """Return the estimates of all epochs."""

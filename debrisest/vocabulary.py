@@ -144,9 +144,9 @@ VOCABULARY: dict[str, Quantity] = {
     ),
     "start_attitude_bias_sigma": Quantity(("run", "observer", "axis"), "rad", "its 1-sigma"),
     "cameras_at_start": Quantity(_RUN, "1", "cameras that see the debris at time zero", "1"),
-    "pointing_status": Quantity(_RUN, "", "whether the debris stayed in view, in words"),
+    "pointing_status": Quantity(_RUN, "", "whether the debris was in view at each epoch"),
     "first_section": Quantity(_RUN, "s", "when cameras are turned for the first time", "s"),
-    "settling_time": Quantity(_RUN, "s", "until the pixel stays within 5 px of the middle", "s"),
+    "settling_time": Quantity(_RUN, "s", "until the pixel stays within 5 px, if it does", "s"),
     "stage_one_time": Quantity(_RUN, "s", "length of the first stage of control", "s"),
     "peak_torque": Quantity(_RUN, "N m", "largest component of the torque", "mN m"),
     "total_variation": Quantity(_RUN, "N m", "sum of the steps of a torque component", "mN m"),
@@ -347,6 +347,9 @@ _TABLE_SCALE = {
 
 TWO_SIDED = ("first_section",)
 """Quantities of the tables that are no errors: more is as bad as less."""
+
+WHERE_KEPT = ("nees", "w")
+"""Quantities of the tables that are known only where a filter kept its covariance."""
 
 
 def has_runs(name: str) -> bool:

@@ -153,6 +153,12 @@ def test_what_was_simulated_is_drawn_once_for_each_case(
         ("estimators.best.filter.detection_probability=0", "must be greater than 0"),
         ("estimators.best.filter.detection_probability=1.5", "less than or equal to 1"),
         ("estimators.best.filter.gate=-1", "must be greater than 0"),
+        ("sensors.control.control_step_s=1e-9", "must be at most step_s, 1 s, and at least"),
+        ("sensors.control.control_step_s=1e300", "must be at most step_s, 1 s, and at least"),
+        ("sensors.control.margin_px=300", "must be less than the camera's half_size_px, 180 px"),
+        ("sensors.control.switching.least_s=90", "must not be longer than most_s, 40 s"),
+        ("sensors.points.clutter={count: 1000000000000000, half_width_px: 1}", "more memory than"),
+        ("sensors.points.companions={count: 8, spread_km: 1}", "at most 7 pieces beside"),
         ("estimators.best.cases=[nominl]", "unknown case 'nominl'.*did you mean nominal"),
         (
             "tables.layout=[{table: a, title: b, stage: filter, quantities: [position], "

@@ -25,7 +25,8 @@ def test_the_undisturbed_cases_are_those_of_the_paper(shipped: Path, case: str) 
     assert robust.seed == paper.seed and robust.clock == paper.clock
     assert robust.tables.diverged == paper.tables.diverged
     for name, same in (("ungated", "best"), ("bound", "bound")):
-        assert robust.estimators[name].model_dump() == paper.estimators[same].model_dump()
+        ours, theirs = robust.estimators[name], paper.estimators[same]
+        assert ours.model_dump(exclude={"cases"}) == theirs.model_dump(exclude={"cases"})
 
 
 def test_poor_guesses_have_ten_times_the_variance(shipped: Path) -> None:
@@ -43,6 +44,9 @@ def rows(shipped: Path, tmp_path_factory: pytest.TempPathFactory, sweep: Callabl
     """Tables of 2 runs over 6 s."""
     folder = tmp_path_factory.mktemp("robust")
     scenario = parse((shipped / "pesce2017-robust.yaml").read_text(), "shipped")[0].value
+    for estimator in scenario["estimators"].values():
+        estimator.pop("cases", None)
+        estimator["filter"]["keep_s"] = []
     table = {"table": "1", "title": "Errors", "stage": "filter", "quantities": ERRORS}
     changes = {
         "runs": 2,

@@ -23,6 +23,8 @@ def shortened(text: str) -> dict:
     """The shipped scenario over 12 s, with the cases A-deg and C-late and one table."""
     scenario = parse(text, "shipped")[0].value
     late = scenario["cases"]["C-late"] | {"duration_s": EPOCHS + 1}
+    for estimator in scenario["estimators"].values():
+        estimator["filter"]["keep_s"] = [1, 10]
     table = {"table": "4", "title": "Errors", "stage": "filter"}
     return scenario | {
         "runs": RUNS,

@@ -63,8 +63,7 @@ def consistent_interval(
         low, high = interval(pooled(np.stack([pooled(group) for group in groups])), confidence)
         return float(low), float(high)
     if statistic in _MEDIANS:
-        ends = [_median_interval(pooled(g) / len(g), len(g), confidence) for g in groups]
-        return float(np.mean([low for low, _ in ends])), float(np.mean([high for _, high in ends]))
+        return _interval_of_medians(groups, confidence)
     return np.nan, np.nan
 
 
@@ -94,16 +93,32 @@ def pooled(freedom: Array) -> Array:
     return np.asarray(len(freedom) ** 2 / np.sum(1.0 / freedom))
 
 
-def _median_interval(freedom: Array, runs: int, confidence: float) -> tuple[float, float]:
-    """Interval of the median of ``runs`` squares per degree of freedom.
+def _interval_of_medians(groups: list[Array], confidence: float) -> tuple[float, float]:
+    """Interval of the mean of the groups' medians, which are independent.
+
+    The distances from its middle to its ends are those of the groups, added in squares.
+    """
+    tail = 0.5 * (1.0 - confidence)
+    at = np.array([tail, 0.5, 1.0 - tail])
+    low, middle, high = np.transpose([_median_quantiles(group, at) for group in groups])
+    centre, count = np.mean(middle), len(groups)
+    below, above = np.linalg.norm(middle - low), np.linalg.norm(high - middle)
+    return float(centre - below / count), float(centre + above / count)
+
+
+def _median_quantiles(freedom: Array, at: Array) -> Array:
+    """Quantiles ``at`` these probabilities of the median of squares per degree of freedom.
 
     Of n uniform draws, n odd, the middle one follows Beta((n + 1) / 2, (n + 1) / 2); the mean of
     the two middle ones of an even n nearly follows the beta distribution of its variance,
-    n / (4 (n + 1) (n + 2)). Runs of different freedom are taken at their harmonic mean.
+    n / (4 (n + 1) (n + 2)). The median of two is their mean, a chi-square itself. Runs of different
+    freedom are taken at their harmonic mean.
     """
     from scipy.stats import beta, chi2
 
-    count = runs + 2 if runs % 2 else (runs + 1) * (runs + 2) / runs
-    half, tail = 0.5 * (count - 1), 0.5 * (1.0 - confidence)
-    low, high = chi2.ppf(beta.ppf([tail, 1.0 - tail], half, half), freedom) / freedom
-    return float(low), float(high)
+    runs, together = len(freedom), pooled(freedom)
+    if runs <= 2:
+        return np.asarray(chi2.ppf(at, together) / together)
+    each = together / runs
+    half = 0.5 * (runs + 1) if runs % 2 else 0.5 * ((runs + 1) * (runs + 2) / runs - 1)
+    return np.asarray(chi2.ppf(beta.ppf(at, half, half), each) / each)

@@ -13,14 +13,17 @@ SETTLED = 5.0
 
 
 class SectionMetrics(NamedTuple):
-    """Of one control section; NaN in runs that have no such section."""
+    """Of one control section; NaN in runs that have no such section.
+
+    In runs that end within it, NaN but for the start.
+    """
 
     start: Array
     """(run,), s."""
     length: Array
     """(run,), s, a whole number of epochs."""
     settling_time: Array
-    """From which on the pixel is settled until tracking ends, s; if it never is, the length."""
+    """From which on the pixel is settled until tracking ends, s; NaN if it never is."""
     stage_one_time: Array
     """Of tracking, s."""
     peak_torque: Array
@@ -35,8 +38,8 @@ def section_metrics(pointing: Pointing, number: int, step: float) -> SectionMetr
     """Return the metrics (run, satellite) of section 1, 3, ...; epochs are ``step`` s apart."""
     epochs = pointing.section == number
     has, first, count = epochs.any(1), epochs.argmax(1), epochs.sum(1)
-    length = step * count[:, None]
-    last = np.minimum(first + count, epochs.shape[1] - 1)
+    ended = has & ~epochs[:, -1]
+    next_one = np.where(ended, first + count, 0)
     fine = step / pointing.stage.shape[2]
     ran = epochs[:, :, None, None] & ~np.isnan(pointing.stage)
     torque = _flat(np.where(ran[..., None], pointing.torque, np.nan))
@@ -45,20 +48,20 @@ def section_metrics(pointing: Pointing, number: int, step: float) -> SectionMetr
     stage_one = fine * tracks.sum(1)
     settling = _time_of_last(tracks & far, fine) - first[:, None] * step
     settles = (stage_one > 0.0) & (settling < stage_one - 0.5 * fine)
-    settling = np.where(settles, np.maximum(settling, 0.0), length)
     size, steps = np.abs(torque), np.abs(np.diff(torque, axis=1))
-    missing = ~has[:, None]
     return SectionMetrics(
         start=np.where(has, first * step, np.nan),
-        length=np.where(has, length[:, 0], np.nan),
-        settling_time=np.where(missing, np.nan, settling),
-        stage_one_time=np.where(missing, np.nan, stage_one),
-        peak_torque=np.where(missing, np.nan, np.fmax.reduce(size, 1).max(-1)),
-        total_variation=np.where(missing, np.nan, np.nansum(steps, axis=1).max(-1)),
-        final_angles=np.where(
-            missing[..., None], np.nan, pointing.angles[np.arange(len(has)), last]
-        ),
+        length=np.where(ended, count * step, np.nan),
+        settling_time=_if(ended[:, None] & settles, np.maximum(settling, 0.0)),
+        stage_one_time=_if(ended[:, None], stage_one),
+        peak_torque=_if(ended[:, None], np.fmax.reduce(size, 1).max(-1)),
+        total_variation=_if(ended[:, None], np.nansum(steps, axis=1).max(-1)),
+        final_angles=_if(ended[:, None, None], pointing.angles[np.arange(len(has)), next_one]),
     )
+
+
+def _if(there: BoolArray, values: Array) -> Array:
+    return np.where(there, values, np.nan)
 
 
 def _flat(history: Array) -> Array:

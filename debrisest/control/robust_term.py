@@ -13,8 +13,9 @@ from debrisest.arrays import Array
 Reading = Literal["literal", "conditional", "saturated", "sign", "none"]
 """``literal``: as printed, with the signs of F, v and s. It is smooth, but is not what the theory
 asks for, where F carries the sign of s. ``conditional``: the same, with an integral in s that grows
-only near the goal. ``sign``: ``sign(s) (F + D |v| + eta |s|) / (1 - D)``, which chatters.
-``saturated``: that with a linear stretch about s = 0. ``none``: feedback linearisation alone."""
+only near the goal; in the first stage alone, as the second starts at its goal. ``sign``:
+``sign(s) (F + D |v| + eta |s|) / (1 - D)``, which chatters. ``saturated``: that with a linear
+stretch about s = 0. ``none``: feedback linearisation alone."""
 
 
 class Gains(NamedTuple):

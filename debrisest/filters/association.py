@@ -50,9 +50,8 @@ def associated(
     * `truth` (run, time, n) overrules: no estimator, but with `"known"` the efficient one.
 
     The NIS of a sensor is the mean of the squared distances of the validated detections, by their
-    probabilities; `nis_dof` counts its d components. It is chi-square for `"known"` only: else it
-    is cut off at the gate, and drawn to small values by the choice. `rejected` counts components of
-    detections outside the gate, clutter included.
+    probabilities; `nis_dof` counts its d components. It is chi-square for `"known"` only, and there
+    not if `stacked`: else it is cut off at the gate, and drawn to small values by the choice.
     """
     gate = np.inf if method == "known" else validation.gate
     weigh = _weigh(validation, method, scans)

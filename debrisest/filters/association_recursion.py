@@ -30,6 +30,7 @@ class _Seen(NamedTuple):
     nis: Array
     dof: IntArray
     rejected: IntArray
+    validated: IntArray
 
     def plus(self, judged: Judged, d: int) -> "_Seen":
         """Add the detections of further sensors."""
@@ -42,6 +43,7 @@ class _Seen(NamedTuple):
             self.nis + squared.sum(-1),
             self.dof + d * (detected > 0.0).sum(-1),
             self.rejected + d * outside.sum((-2, -1)),
+            self.validated + judged.valid[:, 0].sum((-2, -1)),
         )
 
 
@@ -67,7 +69,9 @@ def filtered(
             tracks, seen = _look(model, tracks, nominal, scans[:, k], rule, k)
             if rule.relinearise > 0 and (k + 1) % rule.relinearise == 0:
                 nominal = tracks.state
-            tally = Tally(np.ones_like(repairs), seen.rejected, np.zeros_like(repairs))
+            tally = Tally(
+                *(np.ones_like(repairs), seen.rejected, np.zeros_like(repairs)), seen.validated
+            )
             target = tracks.state[:, 0], tracks.covariance[:, 0]
             writer.record(k, *target, seen.nis, seen.dof, repairs, tally)
     return writer.history()
@@ -100,7 +104,7 @@ def _look(
     shown = model.points(nominal, k)
     h = np.broadcast_to(model.points_jacobian(nominal, k), (*shown.shape, nominal.shape[-1]))
     nothing = np.zeros(len(scan), dtype=np.int64)
-    seen = _Seen(nothing.astype(np.float64), nothing, nothing)
+    seen = _Seen(nothing.astype(np.float64), nothing, nothing, nothing)
     for group in _groups(shown.shape[-2], rule.stacked):
         lag = tracks.state - nominal
         predicted = shown[:, :, group] + (h[:, :, group] @ lag[:, :, None, :, None])[..., 0]

@@ -54,6 +54,8 @@ class History(NamedTuple):
     """Number of measured components that a gate kept out, (run, time)."""
     reopened: IntArray
     """How often a gate that had locked the run out was opened, (run,)."""
+    validated: IntArray
+    """Number of unlabelled detections that gates let through, (run, time)."""
 
 
 class Tally(NamedTuple):
@@ -62,6 +64,7 @@ class Tally(NamedTuple):
     iterations: IntArray
     rejected: IntArray
     reopened: IntArray
+    validated: IntArray | int = 0
 
 
 class HistoryWriter:
@@ -99,6 +102,7 @@ class HistoryWriter:
             iterations=np.ones((runs, epochs), dtype=np.int64),
             rejected=np.zeros((runs, epochs), dtype=np.int64),
             reopened=np.zeros(runs, dtype=np.int64),
+            validated=np.zeros((runs, epochs), dtype=np.int64),
         )
 
     @property
@@ -137,6 +141,7 @@ class HistoryWriter:
         if tally is not None:
             history.iterations[:, k] = tally.iterations
             history.rejected[:, k] = tally.rejected
+            history.validated[:, k] = tally.validated
             history.reopened[self._alive] += tally.reopened[self._alive]
         if k in self._slot:
             history.covariance[:, self._slot[k]] = covariance
@@ -148,7 +153,7 @@ class HistoryWriter:
         lost = (start >= 0) & (np.arange(history.state.shape[1]) >= start)
         for values in (history.state, history.sigma, history.nis):
             values[lost] = np.nan
-        for counts in (history.nis_dof, history.iterations, history.rejected):
+        for counts in (history.nis_dof, history.iterations, history.rejected, history.validated):
             counts[lost] = 0
         history.covariance[lost[:, history.kept]] = np.nan
         return history

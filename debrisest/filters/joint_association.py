@@ -8,8 +8,10 @@ import numpy as np
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.association_weights import Validation, weights
 
-_SMALLEST_ABSENCE = 1e-60
-"""So that tracks that cannot miss still have an answer where they must share one detection."""
+MOST_TRACKS = 8
+"""Memory grows with tracks times 4^tracks."""
+
+_SMALLEST_PRODUCT = 1e-300
 
 
 class _Links(NamedTuple):
@@ -33,9 +35,13 @@ def joint(distance: Array, validation: Validation, d: int) -> Array:
     A joint event weighs the product of the weights that its tracks have alone; events in which two
     tracks share a detection are ruled out. One track, or tracks with nothing in common, get the
     probabilities of `probabilistic`. A neighbour's detection in the gate counts as clutter in b.
+
+    Tracks that cannot miss still have an answer where they must share a detection: absence weighs
+    at least so much that the product over all tracks does not underflow.
     """
     found = weights(distance, validation, d)
-    return exclusive(found.present, np.maximum(found.absent, _SMALLEST_ABSENCE))
+    least = _SMALLEST_PRODUCT ** (1.0 / distance.shape[-2])
+    return exclusive(found.present, np.maximum(found.absent, least))
 
 
 def exclusive(present: Array, absent: Array) -> Array:
@@ -47,6 +53,8 @@ def exclusive(present: Array, absent: Array) -> Array:
     already: a forward and a backward sum over 2^tracks sets, of positive terms only.
     """
     tracks, detections = present.shape[-2:]
+    if tracks > MOST_TRACKS:
+        raise ValueError(f"at most {MOST_TRACKS} tracks can be associated jointly, not {tracks}")
     links = _links(tracks)
     weight = np.swapaxes(present, -2, -1)[..., links.track]
     forward = [_nobody_yet(present.shape[:-2], tracks)]

@@ -5,12 +5,12 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from debrisest.arrays import Array, Data
+from debrisest.arrays import Array
 from debrisest.filters.association import associated, jointly_associated
 from debrisest.filters.association_weights import Misses, Validation
-from debrisest.filters.history import FilterStatus, History
+from debrisest.filters.history import History
 from debrisest.filters.scan_model import ScanModel
-from debrisest.outcome import sentences
+from debrisest.parts.filtered import filtered
 from debrisest.parts.filters import KeptTimes, kept_epochs
 from debrisest.roles import Filtered, FilterPart, Given, Positive
 
@@ -20,6 +20,7 @@ Probability = Annotated[float, Field(gt=0, le=1)]
 class _Validating(FilterPart):
     """Keys of the filters that have to tell the target from clutter."""
 
+    version = 2
     needs = ("scan_model",)
     gate: Positive = 9.21
     detection_probability: Probability = 0.99
@@ -58,7 +59,7 @@ class AssociationFilter(_Validating):
             truth=_truth(given) if self.linearised == "truth" else None,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(history, given)
+        return _unlabelled(history)
 
     def _every(self, step: float) -> int:
         if self.linearised == "estimate":
@@ -78,7 +79,7 @@ class JointAssociation(_Validating):
             stacked=self.stacked,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(history, given)
+        return _unlabelled(history)
 
 
 class KnownAssociation(FilterPart):
@@ -95,11 +96,14 @@ class KnownAssociation(FilterPart):
             method="known",
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _filtered(history, {})
+        return filtered(history)
 
 
 class LinearisedAtTruth(FilterPart):
-    """The bound as an estimator: known detections, linearised at the truth."""
+    """The posterior bound along each run (Tichavsky et al. 1998) as an estimator.
+
+    Known detections, linearised at the truth.
+    """
 
     needs = ("scan_model",)
     kind: Literal["linearised_at_truth"]
@@ -113,7 +117,7 @@ class LinearisedAtTruth(FilterPart):
             truth=_truth(given),
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _filtered(history, {})
+        return filtered(history)
 
 
 def _truth(given: Given) -> Array:
@@ -122,21 +126,8 @@ def _truth(given: Given) -> Array:
     return given.truth
 
 
-def _filtered(history: History, counts: Data) -> Filtered:
-    return Filtered(
-        *(history.state, history.sigma, history.covariance, history.kept),
-        *(history.nis, history.nis_dof),
-        status=sentences(history.status, FilterStatus),
-        counts=counts,
-    )
-
-
-def _unlabelled(history: History, given: Given) -> Filtered:
+def _unlabelled(history: History) -> Filtered:
     """Without NIS, which is not chi-square where detections are chosen by their distance."""
-    shown = np.isfinite(given.measured).all(-1).sum((-2, -1))
-    lost = np.isnan(history.nis)
-    validated = np.where(lost, 0, shown - history.rejected // given.measured.shape[-1])
-    filtered = _filtered(history, {"validated": validated})
-    return filtered._replace(
+    return filtered(history, validated=history.validated)._replace(
         nis=np.full_like(history.nis, np.nan), nis_dof=np.zeros_like(history.nis_dof)
     )

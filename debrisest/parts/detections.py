@@ -3,7 +3,7 @@
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
@@ -25,6 +25,10 @@ class Clutter(Keys):
     half_width_px: Positive
 
 
+MOST_COMPANIONS = 7
+"""With the debris as many tracks as can be associated jointly."""
+
+
 class Companions(Keys):
     """Pieces that fly beside the debris for good, and what is known of them at time zero."""
 
@@ -33,6 +37,15 @@ class Companions(Keys):
     relative_speed_m_s: NonNegative = Field(10.0, description="1 sigma per axis")
     position_sigma_m: Positive = Field(1e4, description="of the first guess")
     velocity_sigma_m_s: Positive = Field(100.0, description="of the first guess")
+
+    @field_validator("count")
+    @classmethod
+    def _few(cls, count: int) -> int:
+        if count > MOST_COMPANIONS:
+            raise ValueError(
+                f"at most {MOST_COMPANIONS} pieces beside the debris are possible, not {count}"
+            )
+        return count
 
 
 class Detections(SimulationPart):

@@ -7,10 +7,9 @@ from pydantic import Field
 from debrisest.clock import Clock
 from debrisest.filters.extended import extended
 from debrisest.filters.gate import Gate
-from debrisest.filters.history import FilterStatus, History
 from debrisest.filters.model import Model
 from debrisest.filters.unscented import UnscentedParameters, unscented
-from debrisest.outcome import sentences
+from debrisest.parts.filtered import filtered
 from debrisest.roles import Filtered, FilterPart, Given, NonNegative, Positive
 
 KeptTimes = Annotated[
@@ -48,7 +47,7 @@ class Unscented(FilterPart):
             keep=kept_epochs(self.keep_s, given.clock),
             redraw=self.redraw,
         )
-        return _filtered(history)._replace(counts={"repairs": history.repairs})
+        return filtered(history)
 
 
 class Extended(FilterPart):
@@ -75,15 +74,4 @@ class Extended(FilterPart):
             keep=kept_epochs(self.keep_s, given.clock),
             gate=Gate() if self.gate else None,
         )
-        counts = {"updates": history.iterations, "repairs": history.repairs}
-        if self.gate:
-            counts |= {"rejected": history.rejected, "reopened": history.reopened}
-        return _filtered(history)._replace(counts=counts)
-
-
-def _filtered(history: History) -> Filtered:
-    return Filtered(
-        *(history.state, history.sigma, history.covariance, history.kept),
-        *(history.nis, history.nis_dof),
-        status=sentences(history.status, FilterStatus),
-    )
+        return filtered(history, self.gate, updates=history.iterations)

@@ -6,16 +6,18 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, field_validator
 
-from debrisest.arrays import Array, BoolArray, Data
+from debrisest.arrays import Array, Data
 from debrisest.attitude import euler, quaternion
 from debrisest.clock import Clock
-from debrisest.control.closed_loop import Camera, ClosedLoop, Factors, Frozen
+from debrisest.control.camera import Camera
+from debrisest.control.closed_loop import ClosedLoop, Factors, Frozen
 from debrisest.control.rigid_spacecraft import spacecraft
 from debrisest.control.robust_term import Reading, Uncertainty
 from debrisest.control.track import seen_from
 from debrisest.control.two_stage import Controller
 from debrisest.draws import Draws, Stream
 from debrisest.dynamics.local_frame import Axes, local_axes
+from debrisest.parts.pointing_checks import control_steps, require_room, require_view
 from debrisest.parts.pointing_keys import Holding, Switching, Tracking, gains, switch
 from debrisest.parts.pointing_results import epochs, history, scalars
 from debrisest.roles import NonNegative, Positive, SimulationPart, Vector3
@@ -27,6 +29,8 @@ _INPUTS = (
     *("camera_scale", "image_half_size"),
 )
 
+_UNCERTAINTY = Uncertainty()
+
 
 class PointingControl(SimulationPart):
     """The closed loop of camera, controller and spacecraft, alike on all satellites.
@@ -34,6 +38,7 @@ class PointingControl(SimulationPart):
     The controller sees the debris' own pixel and never an estimate.
     """
 
+    version = 2
     tried = True
     needs = _INPUTS
     gives = (
@@ -56,9 +61,11 @@ class PointingControl(SimulationPart):
     round_pixel: bool = True
     orbital_rate: Literal["ignored", "counted"] = "ignored"
     held_in: Frozen = Field("local", description="axes in which cameras stand still meanwhile")
-    drift_error: NonNegative = Field(0.1, description="share of the state function that is wrong")
+    drift_error: NonNegative = Field(
+        _UNCERTAINTY.drift, description="share of the state function that is wrong"
+    )
     gain_error: Annotated[float, Field(ge=0, lt=1)] = Field(
-        0.4, description="share of the input matrix that is wrong"
+        _UNCERTAINTY.gain, description="share of the input matrix that is wrong"
     )
     tracking: Tracking = Tracking()
     holding: Holding = Holding()
@@ -98,11 +105,12 @@ def _simulated(
     part: PointingControl, inputs: list[Array], clock: Clock, draws: Draws | None
 ) -> Data:
     observers = inputs[2], inputs[3]
+    require_room(part.margin_px, inputs[5])
     loop = _loop(part, inputs, clock, draws)
     angles = np.zeros(loop.track.point_o[:, 0].shape)
     visible = loop.in_view(angles)
     if part.axes == "repaired":
-        _require_view(visible)
+        require_view(visible)
     happened = loop.run(angles)
     q_io = quaternion.from_matrix(local_axes(*observers, part.axes))
     q_ib = quaternion.multiply(q_io, euler.to_quaternion(happened.angles))
@@ -122,9 +130,10 @@ def _loop(
     position, velocity, observer_position, observer_velocity, scale, half_size = inputs
     track = seen_from(position, velocity, observer_position, observer_velocity, part.axes)
     craft = spacecraft(np.array(part.inertia_kg_m2))
+    camera = Camera(scale[:, None], half_size[:, None], part.margin_px, part.round_pixel)
     controller = Controller(
         craft=craft,
-        scale=scale[:, None],
+        scale=camera.scale,
         reading=part.robust_term,
         tracking=gains(part.tracking),
         holding=gains(part.holding),
@@ -133,10 +142,10 @@ def _loop(
         torque_limit=np.inf if part.torque_limit_n_m is None else part.torque_limit_n_m,
         anti_windup=part.anti_windup,
     )
-    substeps = int(np.ceil(clock.step / part.control_step_s - 1e-9))
+    substeps = control_steps(clock.step, part.control_step_s)
     return ClosedLoop(
         controller=controller,
-        camera=Camera(half_size[:, None], part.margin_px, part.round_pixel),
+        camera=camera,
         plant=craft,
         track=track,
         step=clock.step,
@@ -156,11 +165,3 @@ def _factors(
     if draws is None or part.errors == "constant":
         return lambda: constant
     return lambda: 1.0 + shares * draws.normal(Stream.MEASUREMENT_NOISE, shape)
-
-
-def _require_view(visible: BoolArray) -> None:
-    if not visible.any(-1).all():
-        raise ValueError(
-            "no camera sees the debris at the start: it is behind them or outside their images; "
-            "change the orbits, the camera's scale_px or half_size_px"
-        )

@@ -1,13 +1,16 @@
 """Keys of the pointing control: gains of its two stages, and when it changes between them."""
 
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from debrisest.control import attitude_hold, pixel_tracking
 from debrisest.control.robust_term import Gains
 from debrisest.control.two_stage import Switch
 from debrisest.roles import Keys, NonNegative, Positive
+
+_SWITCH = Switch()
 
 _Pair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 _Triple = Annotated[list[Positive], Field(min_length=3, max_length=3)]
@@ -17,30 +20,38 @@ _Five = Annotated[list[Positive], Field(min_length=5, max_length=5)]
 class Tracking(Keys):
     """Gains of the first stage: two pixels, three rates."""
 
-    proportional: _Five = [5.0, 5.0, 1.0, 1.0, 1.0]
-    damping: _Pair = [3.0, 3.0]
-    robustness: _Five = [0.1, 0.1, 0.001, 0.0005, 0.001]
-    boundary: _Five = [60.0, 60.0, 0.3, 0.3, 0.3]
+    proportional: _Five = pixel_tracking.GAINS.proportional.tolist()
+    damping: _Pair = pixel_tracking.GAINS.damping.tolist()
+    robustness: _Five = pixel_tracking.GAINS.robustness.tolist()
+    boundary: _Five = pixel_tracking.GAINS.boundary.tolist()
 
 
 class Holding(Keys):
     """Gains of the second stage: three Euler angles."""
 
-    proportional: _Triple = [10.0, 10.0, 10.0]
-    damping: _Triple = [1.0, 1.0, 1.0]
-    robustness: _Triple = [0.001, 0.001, 0.001]
-    boundary: _Triple = [0.2, 0.2, 0.2]
+    proportional: _Triple = attitude_hold.GAINS.proportional.tolist()
+    damping: _Triple = attitude_hold.GAINS.damping.tolist()
+    robustness: _Triple = attitude_hold.GAINS.robustness.tolist()
+    boundary: _Triple = attitude_hold.GAINS.boundary.tolist()
 
 
 class Switching(Keys):
     """When the first stage has done its work, and how long the second lasts."""
 
-    pixel_px: Positive = 1.5
-    rate_rad_s: Positive = 0.01
-    calm_s: NonNegative = 0.5
-    least_s: NonNegative = 3.0
-    most_s: Positive = 40.0
-    hold_s: NonNegative = 15.0
+    pixel_px: Positive = _SWITCH.pixel
+    rate_rad_s: Positive = _SWITCH.rate
+    calm_s: NonNegative = _SWITCH.calm
+    least_s: NonNegative = _SWITCH.least
+    most_s: Positive = _SWITCH.most
+    hold_s: NonNegative = _SWITCH.hold
+
+    @model_validator(mode="after")
+    def _least_below_most(self) -> Self:
+        if self.least_s > self.most_s:
+            raise ValueError(
+                f"least_s, {self.least_s:g} s, must not be longer than most_s, {self.most_s:g} s"
+            )
+        return self
 
 
 def gains(keys: Tracking | Holding) -> Gains:

@@ -7,13 +7,13 @@ from debrisest.clock import Clock
 from debrisest.control.closed_loop import Pointing
 from debrisest.control.metrics import section_metrics
 
-_KEPT = "in view of every camera to the end"
-_LOST = "not in view of every camera all the time"
-_NEVER = "never in view of any camera"
+_KEPT = "in view of every camera at each epoch"
+_LOST = "not in view of every camera at each epoch"
+_NEVER = "in view of no camera at any epoch"
 
 
 def epochs(happened: Pointing) -> Data:
-    """What there is at every epoch, and how it went in words."""
+    """What there is at every epoch, and how it went in words, which leave out the time between."""
     seen: BoolArray = np.asarray(~np.isnan(happened.pixel).any(-1))
     words = np.where(seen.all((1, 2)), _KEPT, np.where(seen.any((1, 2)), _LOST, _NEVER))
     return {
@@ -37,7 +37,10 @@ def history(happened: Pointing, clock: Clock, every: int) -> Data:
 
 
 def scalars(happened: Pointing, clock: Clock) -> Data:
-    """When the first control section begins, and of it the worst satellite; NaN without one."""
+    """When the first control section begins, and of it the worst satellite; NaN without one.
+
+    NaN too where the scenario ends within it, and the settling time where a satellite has none.
+    """
     metrics = section_metrics(happened, 1, clock.step)
     return {
         "first_section": metrics.start,

@@ -8,10 +8,9 @@ in the Hill frame, w rate, s log-ratios of the inertia.
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data, IntArray
-from debrisest.assessment.consistency import normalized_square
+from debrisest.assessment.nees import covariance_epochs, nees
 from debrisest.assessment.observability import known_directions
 from debrisest.assessment.shape_alignment import best_rotation, rms_distance, shape_error
-from debrisest.assessment.statistics import per_dimension
 from debrisest.attitude import quaternion
 from debrisest.dynamics import log_inertia
 from debrisest.target.start_frame import InStartFrame, in_start_frame
@@ -117,19 +116,15 @@ def _remaining(data: Data, truth: InStartFrame, errors: Data) -> Data:
 
 
 def _consistency(data: Data, errors: Data, rows: IntArray) -> Data:
-    """NEES per dimension of w, rho, v and s at the epochs whose covariance was kept.
+    """NEES of w, rho, v and s.
 
     The attitude is left out: at zero process noise it follows from the others, and the covariance
     with it is singular.
     """
-    times, kept = data["time_s"], np.searchsorted(data["time_s"], data["covariance_time_s"])
+    kept = covariance_epochs(data)
     names = ("rate_error", "position_error", "velocity_error", "log_inertia_error")
     error = np.concatenate([errors[name][:, kept] for name in names if name in errors], axis=-1)
-    covariance = data["covariance"][:, :, rows[:, None], rows]
-    square, dof = np.full((len(error), len(times)), np.nan), np.zeros((len(error), len(times)))
-    square[:, kept] = normalized_square(error, covariance)
-    dof[:, kept] = np.where(np.isfinite(square[:, kept]), len(rows), 0)
-    return {"nees": per_dimension(square, dof), "nees_dof": dof}
+    return nees(data, error, data["covariance"][:, :, rows[:, None], rows])
 
 
 def _observability(data: Data, rows: IntArray) -> Data:

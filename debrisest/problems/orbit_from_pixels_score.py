@@ -3,8 +3,7 @@
 import numpy as np
 
 from debrisest.arrays import Array, Data
-from debrisest.assessment.consistency import normalized_square
-from debrisest.assessment.statistics import per_dimension
+from debrisest.assessment.nees import covariance_epochs, nees
 from debrisest.attitude import quaternion
 from debrisest.problems.orbit_from_pixels_model import ORBIT
 from debrisest.sensors import pinhole
@@ -77,13 +76,7 @@ def _pixels(data: Data, position: Array, q_ic: Array) -> Array:
 
 
 def _consistency(data: Data) -> Data:
-    """NEES per dimension at the epochs whose covariance was kept, NaN at the others."""
-    times, kept = data["time_s"], np.searchsorted(data["time_s"], data["covariance_time_s"])
     truth = np.concatenate([data["orbit_position"], data["orbit_velocity"]], axis=-1)
     found = np.concatenate([data["debris_position"], data["debris_velocity"]], axis=-1)
-    runs = len(found)
-    square, dof = np.full((runs, len(times)), np.nan), np.zeros((runs, len(times)))
-    error = (found - truth)[:, kept]
-    square[:, kept] = normalized_square(error, data["covariance"][..., ORBIT, ORBIT])
-    dof[:, kept] = np.where(np.isfinite(square[:, kept]), 6, 0)
-    return {"nees": per_dimension(square, dof), "nees_dof": dof}
+    error = (found - truth)[:, covariance_epochs(data)]
+    return nees(data, error, data["covariance"][..., ORBIT, ORBIT])

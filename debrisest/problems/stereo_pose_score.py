@@ -3,8 +3,7 @@
 import numpy as np
 
 from debrisest.arrays import Array, Data
-from debrisest.assessment.consistency import normalized_square
-from debrisest.assessment.statistics import per_dimension
+from debrisest.assessment.nees import covariance_epochs, nees
 from debrisest.attitude import quaternion
 from debrisest.dynamics.relative_rotation import matrix_of_cross
 from debrisest.problems.stereo_pose_chart import difference, robocentric
@@ -51,22 +50,17 @@ def _errors(data: Data) -> Data:
 
 
 def _consistency(data: Data) -> Data:
-    """NEES per dimension at the epochs whose covariance was kept, NaN at the others.
+    """NEES in the robocentric chart of the estimate.
 
-    In the robocentric chart of the estimate: where the points are is known far better than where
+    Where the points are is known far better than where
     the centre of mass is, a thin and curved shell in the chart of position and attitude.
     """
-    times, kept = data["time_s"], np.searchsorted(data["time_s"], data["covariance_time_s"])
+    kept = covariance_epochs(data)
     estimated, true = state_of(data)[:, kept], state_of(data, "true_")[:, kept]
     points = data["point_b"].shape[-2]
     chart = robocentric(estimated, points)
     covariance = chart @ plain_covariance(estimated, data["covariance"]) @ _transposed(chart)
-    error = difference(true, estimated, points)
-    runs, freedom = len(error), error.shape[-1]
-    square, dof = np.full((runs, len(times)), np.nan), np.zeros((runs, len(times)))
-    square[:, kept] = normalized_square(error, covariance)
-    dof[:, kept] = np.where(np.isfinite(square[:, kept]), freedom, 0)
-    return {"nees": per_dimension(square, dof), "nees_dof": dof}
+    return nees(data, difference(true, estimated, points), covariance)
 
 
 def plain_covariance(state: Array, covariance: Array) -> Array:

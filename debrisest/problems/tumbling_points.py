@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data
+from debrisest.assessment.nees import covariance_epochs
 from debrisest.attitude import quaternion
 from debrisest.attitude.points import features_frame
 from debrisest.clock import Clock
@@ -67,7 +68,7 @@ class TumblingPoints(ProblemPart):
 
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors of attitude, rate and inertia in true principal axes, if known."""
-        kept = np.searchsorted(data["time_s"], data["covariance_time_s"])
+        kept = covariance_epochs(data)
         names = ("q_bf", "rate_b", "moments_b")
         derivative = rate_by_errors({name: data[name][:, kept] for name in names})
         covariance = derivative @ data["covariance"] @ np.swapaxes(derivative, -1, -2)

@@ -8,10 +8,10 @@ import numpy as np
 
 from debrisest.arrays import Array, Data
 from debrisest.assessment.attitude import attitude_errors, true_feature_attitude
-from debrisest.assessment.consistency import normalized_square
 from debrisest.assessment.convergence import convergence_time
+from debrisest.assessment.nees import covariance_epochs, nees
 from debrisest.assessment.principal_axes import best_relabeling
-from debrisest.assessment.statistics import per_dimension, window_mask
+from debrisest.assessment.statistics import window_mask
 from debrisest.attitude import quaternion
 from debrisest.dynamics.inertia import principal_axes
 from debrisest.roles import Window
@@ -23,7 +23,8 @@ CONVERGED = np.radians(0.5)
 def scores(data: Data, scored: Window, rate_covariance: Array) -> Data:
     """Return errors of attitude, rate and inertia in true principal axes, as far as known.
 
-    ``rate_covariance (run, kept, 3, 3)`` is that of ``rate_b``, at ``covariance_time_s``.
+    ``rate_covariance (run, kept, 3, 3)`` is that of ``rate_b``, at ``covariance_time_s``; NEES is
+    that of the rate in the estimate's own axes.
     """
     if "true_q_ib" not in data:
         return {}
@@ -37,7 +38,7 @@ def scores(data: Data, scored: Window, rate_covariance: Array) -> Data:
         | _attitude_errors(data)
         | _rate_errors(rate_error, data["time_s"])
         | _inertia_errors(data["moments_b"] @ np.abs(np.swapaxes(relabeling, -1, -2)), moments)
-        | _consistency(data, rate_error @ relabeling, rate_covariance)
+        | nees(data, (rate_error @ relabeling)[:, covariance_epochs(data)], rate_covariance)
     )
 
 
@@ -57,12 +58,3 @@ def _inertia_errors(estimated: Array, moments: Array) -> Data:
     true = moments / np.linalg.norm(moments, axis=-1, keepdims=True)
     error = estimated - true[:, None]
     return {f"inertia_{axis + 1}": error[..., axis] for axis in range(3)}
-
-
-def _consistency(data: Data, error: Array, covariance: Array) -> Data:
-    """NEES per dimension of the rate, in the estimate's own axes; NaN without a covariance."""
-    kept = np.searchsorted(data["time_s"], data["covariance_time_s"])
-    square, freedom = np.full(error.shape[:2], np.nan), np.zeros(error.shape[:2])
-    square[:, kept] = normalized_square(error[:, kept], covariance)
-    freedom[:, kept] = np.where(np.isfinite(square[:, kept]), error.shape[-1], 0)
-    return {"nees": per_dimension(square, freedom), "nees_dof": freedom}

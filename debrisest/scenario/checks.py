@@ -9,6 +9,7 @@ from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.roles import Part
 from debrisest.scenario.document import KeyPath
+from debrisest.scenario.kept import kept_too_late, not_kept
 from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.schema import Scenario, Table, window_of
 from debrisest.vocabulary import VOCABULARY
@@ -16,11 +17,12 @@ from debrisest.vocabulary import VOCABULARY
 MOST_EPOCHS = 10_000_000
 RESERVED = ("plots", "tables.csv", "tables.md", "tables.tex")
 """Names beside the folders of the cases."""
+_TOO_MUCH = "two epochs of one run take more memory than there is; a number here is far too large"
 
 Found = Iterator[tuple[KeyPath, str]]
 
 
-def scenario_problems(scenario: Scenario) -> Found:
+def scenario_problems(scenario: Scenario, case: str = "") -> Found:
     """Yield what does not fit together within one case."""
     epochs = scenario.duration_s / scenario.step_s
     if not 2 <= epochs <= MOST_EPOCHS:
@@ -30,6 +32,7 @@ def scenario_problems(scenario: Scenario) -> Found:
         yield ("duration_s",), f"must be a whole number of steps of {scenario.step_s:g} s"
     yield from _parts_that_lack_data(scenario)
     yield from _windows(scenario)
+    yield from kept_too_late(scenario, case)
 
 
 def file_problems(cases: Mapping[str, Scenario]) -> Found:
@@ -46,8 +49,11 @@ def file_problems(cases: Mapping[str, Scenario]) -> Found:
     refused = (found for scenario in cases.values() for found in _parts_that_refuse(scenario))
     yield from dict.fromkeys(refused)
     for index, table in enumerate(first.tables.layout):
+        path = ("tables", "layout", index)
         if table.stage == "simulate":
-            yield from _not_simulated(("tables", "layout", index, "quantities"), table, cases)
+            yield from _not_simulated((*path, "quantities"), table, cases)
+        elif table.stage == "filter":
+            yield from not_kept((*path, "windows"), table, cases)
 
 
 def _parts_that_lack_data(scenario: Scenario) -> Found:
@@ -93,6 +99,9 @@ def _parts_that_refuse(scenario: Scenario) -> Found:
             data |= part.simulate_named(path.partition(".")[2], data, clock, draws)
         except ValueError as error:
             yield tuple(path.split(".", 1)), str(error)
+            return
+        except (MemoryError, OverflowError):
+            yield tuple(path.split(".", 1)), _TOO_MUCH
             return
 
 

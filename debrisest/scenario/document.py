@@ -133,7 +133,11 @@ def _construct(
         return None if node is None else _scalar(loader, node, problems, source)
     value: dict[str, Any] = {}
     for key_node, value_node in node.value:
-        place, key = _place(source, key_node.start_mark), str(key_node.value)
+        place = _place(source, key_node.start_mark)
+        if not isinstance(key_node, yaml.ScalarNode):
+            problems.append(Problem(place, "a key must be a text, not a list or a mapping"))
+            continue
+        key = str(key_node.value)
         if key in value:
             first = places[(*path, key)].line
             problems.append(Problem(place, f"{key}: this key was already given in line {first}"))

@@ -95,7 +95,7 @@ def load_scenario(path: Path, overrides: Sequence[str] = ()) -> LoadedScenario:
         scenario, found = _validated(complete, scenario_model())
         problems += found
         if scenario is not None:
-            problems += _placed(complete, scenario_problems(scenario))
+            problems += _placed(complete, scenario_problems(scenario, name))
             cases[name] = Case(path.stem, name, complete.value)
     if not problems:
         scenarios = {name: case.scenario for name, case in cases.items()}

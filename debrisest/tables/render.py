@@ -1,6 +1,7 @@
 """Tables as text: for the terminal, Markdown, LaTeX, CSV and JSON."""
 
 from collections.abc import Callable
+from typing import Literal
 
 import pandas as pd
 from rich.box import SIMPLE_HEAD
@@ -10,7 +11,12 @@ from rich.table import Table
 
 from debrisest.scenario.load import LoadedScenario
 from debrisest.tables.layout import Sheet, sheets
-from debrisest.tables.verdict import CONSISTENCY, LEGEND, LEGEND_OF_CONSISTENCY
+from debrisest.tables.verdict import (
+    CONSISTENCY,
+    LEGEND,
+    LEGEND_OF_CONSISTENCY,
+    LEGEND_OF_LOST,
+)
 
 _COLOURS = {
     "=": "green",
@@ -57,15 +63,16 @@ def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
 
 
 def _legends(cells: pd.DataFrame) -> list[str]:
-    """Return what explains the signs and the words of these cells."""
+    """Return what explains the signs, the numbers in brackets and the words of these cells."""
     signs = [LEGEND] if cells["published"].notna().any() else []
+    lost = [LEGEND_OF_LOST] if (cells["failed"] + cells["diverged"] > 0).any() else []
     words = [LEGEND_OF_CONSISTENCY] if cells["verdict"].isin(CONSISTENCY).any() else []
-    return signs + words
+    return ["; ".join(signs + lost)] * bool(signs + lost) + words
 
 
 def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    legend = "; ".join(_legends(cells) or [LEGEND])
-    parts = [f"% {scenario.common.title}\n% {legend}"]
+    legends = _legends(cells)
+    parts = ["\n".join(f"% {text}" for text in (scenario.common.title, *legends))]
     for sheet in sheets(scenario, cells):
         head, *rows = (
             " & ".join(_escaped(text) for text in line) + r" \\"
@@ -73,12 +80,16 @@ def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
         )
         parts.append(
             "\\begin{table}\n"
-            f"\\caption{{{_escaped(f'Table {sheet.number}: {sheet.title}. {legend}')}}}\n"
+            f"\\caption{{{_escaped(_caption(sheet, legends))}}}\n"
             f"\\begin{{tabular}}{{{'l' * len(sheet.heads)}}}\n\\hline\n{head}\n\\hline\n"
             + "\n".join(rows)
             + "\n\\hline\n\\end{tabular}\n\\end{table}"
         )
     return "\n\n".join(parts) + "\n"
+
+
+def _caption(sheet: Sheet, legends: list[str]) -> str:
+    return ". ".join([f"Table {sheet.number}: {sheet.title}", *legends])
 
 
 def _escaped(text: str) -> str:
@@ -94,16 +105,28 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
         for sheet in sheets(scenario, cells):
             title = escape(f"Table {sheet.number}: {sheet.title}")
             console.print(f"\n[bold]{title}[/]", soft_wrap=True)
-            console.print(_rich_table(sheet))
+            console.print(_fitting(sheet, console))
         for text in _legends(cells):
             console.print(f"{text}\n", style="dim", soft_wrap=True)
     return capture.get()
 
 
+def _fitting(sheet: Sheet, console: Console) -> Table:
+    """Return the table; if it is too wide, with units below the names, then names in parts."""
+    unlimited = console.options.update_width(10**4)
+    below = [head.replace(" (", "\n(") for head in sheet.heads]
+    parts = [head.replace("_", "_\n") for head in below]
+    tables = [_rich_table(sheet._replace(heads=heads)) for heads in (sheet.heads, below, parts)]
+    widths = [console.measure(table, options=unlimited).maximum for table in tables]
+    return next((t for t, width in zip(tables, widths) if width <= console.width), tables[-1])
+
+
 def _rich_table(sheet: Sheet) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for head in sheet.heads:
-        table.add_column(escape(head), justify="left" if head in ("case", "source") else "right")
+        side: Literal["left", "right"] = "left" if head in ("case", "source") else "right"
+        whole = head == "source"
+        table.add_column(escape(head), justify=side, overflow="fold", no_wrap=whole)
     previous = ""
     for row in sheet.rows:
         shown = ["" if row[0] == previous and "source" in sheet.heads else row[0], *row[1:]]

@@ -27,20 +27,16 @@ SYMBOLS = {
     Verdict.UNPUBLISHED: "",
     **{said: str(said) for said in CONSISTENCY},
 }
-LEGEND = (
-    "= reproduced, < better, > worse than published, x not reproduced (most runs were lost); "
-    "(n) runs that diverged or failed, left out"
-)
+LEGEND = "= reproduced, < better, > worse than published, x not reproduced (most runs were lost)"
+LEGEND_OF_LOST = "(n) runs that diverged or failed, left out"
 LEGEND_OF_CONSISTENCY = (
     "consistent: within the 95 % chi-square interval of the runs used; over-confident: above it, "
     "the errors are larger than the covariance says; over-cautious: below it"
 )
 
 
-def verdict(measured: float, published: float | None, factor: float, lost: float) -> Verdict:
+def verdict(measured: float, published: float, factor: float, lost: float) -> Verdict:
     """Return the verdict on an error; ``lost`` is the share of runs that diverged or failed."""
-    if published is None:
-        return Verdict.UNPUBLISHED
     if lost > 0.5 or not np.isfinite(measured):
         return Verdict.NOT_REPRODUCED
     if measured < published / factor:

@@ -67,6 +67,33 @@ def test_the_interval_of_a_statistic_covers_what_it_promises(statistic, runs):
     assert coverage(statistic, np.full(runs, 29.0)) == pytest.approx(0.95, abs=0.02)
 
 
+@pytest.mark.parametrize("runs", [2, 4, 6])
+@pytest.mark.parametrize("freedom", [3.0, 29.0])
+def test_the_median_of_a_few_has_an_interval_neither_too_wide_nor_too_narrow(runs, freedom):
+    """Taken for an odd number, 2 and 4 runs would be covered with 97 % and more."""
+    covered = coverage("median", np.full(runs, freedom), trials=40000)
+    assert 0.93 < covered < 0.96
+
+
+def test_the_median_of_two_is_their_mean():
+    for freedom in ([3.0, 3.0], [4.0, 9.0]):
+        groups = [np.array(freedom)]
+        wanted = consistent_interval("mean", groups)
+        assert consistent_interval("median", groups) == pytest.approx(wanted, rel=1e-12)
+
+
+@pytest.mark.parametrize("runs", [(20,) * 9, (1,) * 4, (2,) * 5, (5, 20, 60), (9, 10) * 5])
+@pytest.mark.parametrize("statistic", ["median", "p50", "mean"])
+def test_a_mean_over_cases_is_covered_as_promised(runs, statistic):
+    rng, freedom = np.random.default_rng(8), 6 + 3 * np.arange(len(runs))
+    squares = [rng.chisquare(f, (4000, n)) / f for f, n in zip(freedom, runs)]
+    over_runs = np.mean if statistic == "mean" else np.median
+    figures = np.mean([over_runs(square, axis=-1) for square in squares], axis=0)
+    groups = [np.full(n, float(f)) for f, n in zip(freedom, runs)]
+    low, high = consistent_interval(statistic, groups)
+    assert np.mean((figures > low) & (figures < high)) == pytest.approx(0.95, abs=0.02)
+
+
 @pytest.mark.parametrize("statistic", ["mean", "median"])
 def test_runs_may_differ_in_their_freedom(statistic):
     freedom = np.random.default_rng(6).integers(20, 45, 40).astype(float)

@@ -9,7 +9,8 @@ import pytest
 from debrisest.arrays import Array
 from debrisest.attitude import euler
 from debrisest.control import two_stage
-from debrisest.control.closed_loop import Camera, ClosedLoop, Pointing
+from debrisest.control.camera import Camera
+from debrisest.control.closed_loop import ClosedLoop, Pointing
 from debrisest.control.rigid_spacecraft import spacecraft
 from debrisest.control.track import Track, seen_from
 from debrisest.control.two_stage import Controller
@@ -56,7 +57,7 @@ def closed_loop(track: Callable[..., Track]) -> Callable[..., ClosedLoop]:
         factors = np.full((1, SUBSTEPS, 2, 6), 1.05)
         return ClosedLoop(
             controller=controller,
-            camera=Camera(HALF[None, None], margin, rounded),
+            camera=Camera(np.array([[335.0]]), HALF[None, None], margin, rounded),
             plant=spacecraft(INERTIA),
             track=track(duration),
             step=1.0,

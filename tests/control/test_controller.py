@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from debrisest.control import pixel_tracking
+from debrisest.control.closed_loop import Pointing
 from debrisest.control.metrics import section_metrics
+from debrisest.control.two_stage import Switch
 
 MILLI = 1e-3
+SHORT = Switch(most=6.0, hold=2.0)
 
 
 def starts(seed: int, count: int = 40) -> tuple[np.ndarray, np.ndarray]:
@@ -32,6 +35,14 @@ def test_a_section_that_never_came_has_no_metrics(mission) -> None:
         assert np.isnan(value).all()
 
 
+@pytest.mark.parametrize("epochs", [26, 40, 66])
+def test_of_a_section_that_is_cut_off_only_the_start_is_known(mission, epochs) -> None:
+    start, *others = section_metrics(Pointing(*(x[:, :epochs] for x in mission)), 1, 1.0)
+    assert start.tolist() == [25.0]
+    for value in others:
+        assert np.isnan(value).all()
+
+
 @pytest.mark.parametrize(
     ("reading", "settling", "stage_one", "peak", "variation"),
     [
@@ -51,7 +62,7 @@ def test_smooth_readings_are_those_of_the_prototype(
 
 
 def test_the_sign_of_the_surface_chatters(fly) -> None:
-    metrics = section_metrics(fly(36, reading="sign"), 1, 1.0)
+    metrics = section_metrics(fly(36, reading="sign", switch=SHORT), 1, 1.0)
     assert metrics.total_variation.max() > 40 * MILLI
 
 
@@ -90,15 +101,18 @@ def test_a_small_wheel_needs_integrals_that_stand_still(turn) -> None:
 
 
 def test_the_torque_does_not_depend_on_the_control_step(closed_loop) -> None:
-    coarse = replace(closed_loop(30), substeps=25, factors=lambda: np.full((1, 25, 2, 6), 1.05))
+    loop = closed_loop(36, switch=SHORT)
+    coarse = replace(loop, substeps=25, factors=lambda: np.full((1, 25, 2, 6), 1.05))
     metrics = section_metrics(coarse.run(np.zeros((1, 2, 3))), 1, 1.0)
     np.testing.assert_allclose(metrics.peak_torque / MILLI, [[2.828, 3.979]], rtol=0.005)
 
 
 def test_gains_that_are_too_large_are_an_outcome_and_no_error(fly) -> None:
     wild = pixel_tracking.GAINS._replace(proportional=np.full(5, 1e7), damping=np.full(2, 1e5))
-    pointing = fly(36, tracking=wild)
+    pointing = fly(36, tracking=wild, switch=SHORT)
     assert np.isnan(pointing.pixel[0, 30:]).any(axis=(0, 2)).all()
-    assert (pointing.section[0, 25:] == 1).all()
+    assert (pointing.section[0, 25:33] == 1).all()
     metrics = section_metrics(pointing, 1, 1.0)
-    np.testing.assert_array_equal(metrics.settling_time, [[11.0, 11.0]])
+    assert metrics.length.tolist() == [8.0]
+    assert np.isnan(metrics.settling_time).all()
+    np.testing.assert_allclose(metrics.stage_one_time, 6.0)

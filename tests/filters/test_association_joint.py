@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from debrisest.filters.association_weights import Validation, probabilistic
-from debrisest.filters.joint_association import exclusive, joint
+from debrisest.filters.joint_association import MOST_TRACKS, exclusive, joint
+from debrisest.parts.detections import MOST_COMPANIONS
 
 RULE = Validation(gate=9.0, detection_probability=0.8)
 
@@ -79,6 +80,13 @@ def test_a_neighbour_takes_its_own_detection_away() -> None:
     assert together[0] > together[1]
 
 
-def test_tracks_that_cannot_miss_share_their_only_detection_fairly() -> None:
-    found = joint(np.zeros((1, 4, 1)), Validation(np.inf, 1.0), 2)
-    assert found == pytest.approx(np.full((1, 4, 1), 0.25))
+@pytest.mark.parametrize("tracks", range(1, MOST_TRACKS + 1))
+def test_tracks_that_cannot_miss_share_their_only_detection_fairly(tracks) -> None:
+    found = joint(np.zeros((1, tracks, 1)), Validation(np.inf, 1.0), 2)
+    assert found == pytest.approx(np.full((1, tracks, 1), 1.0 / tracks))
+
+
+def test_the_debris_and_its_companions_are_not_too_many_tracks() -> None:
+    assert MOST_COMPANIONS + 1 == MOST_TRACKS
+    with pytest.raises(ValueError, match="at most 8 tracks"):
+        joint(np.zeros((1, 9, 1)), RULE, 2)

@@ -121,6 +121,21 @@ def test_validated_detections_are_counted_and_have_no_nis(given):
     assert not wide.nis_dof.any()
 
 
+def test_detections_of_a_sensor_that_predicts_nothing_are_not_validated(given):
+    def half_blind(x, k):
+        shown = points(x, k)
+        shown[..., 0, :] = np.nan
+        return shown
+
+    model = MODEL._replace(points=half_blind)
+    found = associate(gate=1e6).run(model, given).counts["validated"]
+    assert np.array_equal(found, associate(gate=1e6).run(MODEL, given).counts["validated"] // 2)
+    lost = given.state.copy()
+    lost[1] = np.nan
+    counts = associate(gate=1e6).run(MODEL, given._replace(state=lost)).counts["validated"]
+    assert not counts[1].any() and counts[[0, 2]].all()
+
+
 def test_joint_association_returns_the_first_track(given):
     joint = JointAssociation(kind="joint_association")
     tracks = given._replace(

@@ -41,7 +41,7 @@ def alike() -> dict:
 def test_runs_that_are_alike_get_the_same(alike) -> None:
     assert alike["section"][:, [24, 25, 42, 43]].tolist() == [[0, 1, 1, 2]] * 3
     assert alike["cameras_at_start"].tolist() == [2, 2, 2]
-    assert set(alike["pointing_status"]) == {"in view of every camera to the end"}
+    assert set(alike["pointing_status"]) == {"in view of every camera at each epoch"}
     np.testing.assert_array_equal(alike["torque"][0], alike["torque"][2])
 
 
@@ -55,8 +55,8 @@ def test_a_run_does_not_depend_on_those_beside_it(alike) -> None:
 
 
 def test_white_errors_are_the_runs_own_and_shake_the_torque(alike) -> None:
-    both = simulate(scene(40, 2), [4, 5], errors="white")
-    alone = simulate(scene(40, 1), [5], errors="white")
+    keys = {"errors": "white", "switching": {"most_s": 10.0, "hold_s": 2.0}}
+    both, alone = simulate(scene(40, 2), [4, 5], **keys), simulate(scene(40, 1), [5], **keys)
     np.testing.assert_array_equal(both["torque"][1], alone["torque"][0])
     assert np.nanmax(np.abs(both["torque"][0] - both["torque"][1])) > 1e-5
     assert np.all(both["total_variation"] > 10 * alike["total_variation"][:2])
@@ -86,7 +86,7 @@ def test_printed_axes_are_a_verdict() -> None:
     assert np.isnan(result["true_pixel"]).all()
     assert not result["section"].any()
     assert result["cameras_at_start"].tolist() == [0, 0]
-    assert set(result["pointing_status"]) == {"never in view of any camera"}
+    assert set(result["pointing_status"]) == {"in view of no camera at any epoch"}
     assert np.isnan(result["peak_torque"]).all()
 
 
@@ -107,8 +107,31 @@ def test_debris_outside_every_image_at_the_start_is_refused() -> None:
         ({"gain_error": 1.0}, "less than 1"),
         ({"torque_limit_n_m": 0.0}, "greater than 0"),
         ({"tracking": {"damping": [3.0]}}, "at least 2"),
+        ({"switching": {"least_s": 90.0}}, "least_s, 90 s, must not be longer than most_s, 40 s"),
     ],
 )
 def test_wrong_settings_are_refused(wrong, word) -> None:
     with pytest.raises(ValidationError, match=word):
         PointingControl(**KEYS | wrong)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"margin_px": 300.0}, "margin_px, 300 px, must be less than the camera's half_size_px"),
+        ({"margin_px": 180.0}, "margin_px, 180 px, must be less"),
+        ({"control_step_s": 1e-9}, "control_step_s, 1e-09 s, must be at most step_s, 1 s"),
+        ({"control_step_s": 1e-300}, "must be at most step_s, 1 s, and at least step_s / 10000"),
+        ({"control_step_s": 1e300}, "must be at most step_s, 1 s"),
+        ({"control_step_s": 1.1}, "must be at most step_s, 1 s"),
+    ],
+)
+def test_what_does_not_fit_the_camera_or_the_clock_is_refused(wrong, said) -> None:
+    with pytest.raises(ValueError, match=said):
+        simulate(scene(3, 1), [0], **wrong)
+
+
+@pytest.mark.parametrize(("control_step", "count"), [(1.0, 1), (0.4, 3), (0.02, 50)])
+def test_a_step_has_a_whole_number_of_control_steps(control_step, count) -> None:
+    result = simulate(scene(3, 1), [0], control_step_s=control_step, store_every=1)
+    assert len(result["control_time_s"]) == 3 * count

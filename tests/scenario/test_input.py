@@ -86,6 +86,12 @@ BAD: dict[str, tuple[str, str, str, list[str]]] = {
     "not_a_number": ("noise_m: 1e-2", "noise_m: .nan", "noise_m", ["number", ".nan"]),
     "no_runs": ("runs: 3", "runs: 0", "runs", ["greater than or equal to 1"]),
     "half_a_run": ("runs: 3", "runs: 2.5", "runs", ["integer", "2.5"]),
+    "list_for_a_key": (
+        "seed: 7\n", "seed: 7\n? [1, 2]\n: 3\n", "[1, 2]\n", ["a key must be a text"],
+    ),
+    "mapping_for_a_key": (
+        "noise_m: 1e-2", "noise_m: 1e-2, {a: 1}: 2", "{a: 1}", ["a key must be a text"],
+    ),
     "nothing_given": ("seed: 7", "seed:", "seed", ["integer", "None"]),
     "two_components": (
         "rate_deg_s: [7.2, 5.5, -1.6]", "rate_deg_s: [7.2, 5.5]", "rate_deg_s: [7.2, 5.5]",

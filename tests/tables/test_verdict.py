@@ -36,12 +36,6 @@ def test_more_than_half_the_runs_lost(lost: float, expected: str) -> None:
     assert verdict(1.0, 1.0, 2.0, lost) == expected
 
 
-@pytest.mark.parametrize("lost", [0.0, 1.0])
-@pytest.mark.parametrize("measured", [1.0, np.nan])
-def test_what_was_not_published_is_not_judged(measured: float, lost: float) -> None:
-    assert verdict(measured, None, 1.0, lost) == "unpublished"
-
-
 @given(positive, positive, factors, positive)
 def test_the_unit_does_not_matter(
     measured: float, published: float, factor: float, k: float

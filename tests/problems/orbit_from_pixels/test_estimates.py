@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from debrisest.assessment.posterior_bound import posterior_bound
 from debrisest.filters.association import associated, jointly_associated
 from debrisest.filters.association_weights import Validation
 
@@ -53,15 +52,17 @@ def differences(function, state: np.ndarray, output_unit: float = 1.0) -> np.nda
 def test_the_bound_is_that_of_the_notes(two_observers) -> None:
     scene = two_observers(1)
     problem = scene.problem()
-    model, _, covariance, _ = scene.given(problem)
+    model, state, covariance, _ = scene.given(problem)
     used = np.isfinite(scene.data["true_pixel"]).all(-1) & (scene.data["section"] != 1)[..., None]
-    found = posterior_bound(model, problem.truth(scene.data), covariance, used)
+    pixels = np.where(used[..., None], scene.data["true_pixel"], np.nan)[..., None, :]
+    truth = problem.truth(scene.data)
+    given = model, state, covariance, pixels, Validation()
+    found = associated(*given, method="known", truth=truth, keep=range(470)).covariance
     spread = 1e-3 * np.sqrt(np.trace(found[0, :, :3, :3], axis1=-2, axis2=-1))
     assert spread[469] == pytest.approx(0.558, abs=0.005)
     assert spread[24] == pytest.approx(2.461, abs=0.01)
     assert spread[65] == pytest.approx(6.666, abs=0.03)
-    independent = information_bound(scene, 110)
-    np.testing.assert_allclose(spread[:110], independent, rtol=1e-5)
+    np.testing.assert_allclose(spread, information_bound(scene, 470), rtol=1e-5)
 
 
 def test_with_known_detections_errors_are_chi_square(two_observers) -> None:

@@ -1,0 +1,26 @@
+"""Options of the commands that only write what the results tell."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+
+def test_quiet_writes_the_tables_and_tells_what_is_unexpected(
+    small: Path, swept: Path, reference: Path, cli: Callable
+) -> None:
+    (swept / "small" / "tables.md").unlink()
+    done = cli("table", small, "--out", swept, "--quiet")
+    assert (done.exit_code, done.stdout, done.stderr) == (0, "", "")
+    whole = (reference / "small" / "tables.md").read_bytes()
+    assert (swept / "small" / "tables.md").read_bytes() == whole
+    file = small.with_name("small.csv")
+    file.write_text(file.read_text().replace("0.8,3,reproduced", "0.8,3,worse"))
+    wrong = cli("table", small, "--out", swept, "--quiet", "--check")
+    assert (wrong.exit_code, wrong.stdout) == (1, "")
+    assert "expected worse" in wrong.stderr
+
+
+def test_quiet_draws_and_names_no_file(small: Path, swept: Path, cli: Callable) -> None:
+    some = ("--out", swept, "--case", "slow", "--estimator", "wahba", "--quiet")
+    done = cli("plot", small, *some)
+    assert (done.exit_code, done.stdout, done.stderr) == (0, "", "")
+    assert list((swept / "small" / "plots").glob("rates*.png"))
