@@ -47,9 +47,10 @@ def sheets(scenario: LoadedScenario, cells: pd.DataFrame) -> list[Sheet]:
 
 def _grid(cells: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
     """Sources side by side for a single quantity, one below the other for several or for words."""
-    names, sources = list(dict.fromkeys(cells["quantity"])), _sources(cells)
+    names = list(dict.fromkeys(cells["quantity"]))
     by_case = list(cells.groupby("case", sort=False))
     if len(names) == 1 and not cells["verdict"].isin(CONSISTENCY).any():
+        sources = _sources(cells)
         rows = [
             [str(case), *(_text(part, source, names[0]) for source in sources)]
             for case, part in by_case
@@ -58,7 +59,7 @@ def _grid(cells: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
     rows = [
         [str(case), _SHOWN.get(source, source), *(_text(part, source, name) for name in names)]
         for case, part in by_case
-        for source in sources
+        for source in _sources(part)
     ]
     return ["case", "source", *_heads(cells)], rows
 
