@@ -34,12 +34,12 @@ from debrisest.parts.starts import Drawn, FirstPoints, FirstSamples
 from debrisest.parts.stereo_sensors import AngularAcceleration, FirstGuess, StereoCamera
 from debrisest.parts.targets import RigidPoints
 from debrisest.parts.tracking_sensors import AttitudeKnowledge, OrbitGuess, PinholeCamera
-from debrisest.problems.camera_range_minimal import CameraRangeMinimal
-from debrisest.problems.camera_range_redundant import CameraRangeRedundant
-from debrisest.problems.orbit_from_pixels import OrbitFromPixels
-from debrisest.problems.stereo_pose import StereoPose, StereoPoseAdditive
-from debrisest.problems.tumbling_attitude import TumblingAttitude
-from debrisest.problems.tumbling_points import TumblingPoints
+from debrisest.problems.camera_range.minimal import CameraRangeMinimal
+from debrisest.problems.camera_range.redundant import CameraRangeRedundant
+from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels
+from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditive
+from debrisest.problems.tumbling.attitude import TumblingAttitude
+from debrisest.problems.tumbling.points import TumblingPoints
 from debrisest.roles import Part
 
 

@@ -35,16 +35,16 @@ from debrisest.clock import Clock
 from debrisest.dynamics.torque_free import torque_free
 from debrisest.filters.extended import extended
 from debrisest.filters.model import Model
-from debrisest.filters.replay import replay
+from debrisest.filters.replay.replay import replay
 from debrisest.filters.unscented import UnscentedParameters, unscented
-from debrisest.problems.camera_range_redundant_model import Setup as Redundant
-from debrisest.problems.camera_range_redundant_model import process as shape_process
-from debrisest.problems.camera_range_redundant_model import redundant_model
-from debrisest.problems.stereo_pose_additive import additive_model
-from debrisest.problems.stereo_pose_model import Setup, measurement, setup
-from debrisest.problems.stereo_pose_replay import replay_model
-from debrisest.problems.stereo_pose_truth import draw_guess, simulate_truth
-from debrisest.problems.tumbling_attitude import TumblingAttitude, Variances
+from debrisest.problems.camera_range.redundant_model import Setup as Redundant
+from debrisest.problems.camera_range.redundant_model import process as shape_process
+from debrisest.problems.camera_range.redundant_model import redundant_model
+from debrisest.problems.stereo_pose.additive import additive_model
+from debrisest.problems.stereo_pose.model import Setup, measurement, setup
+from debrisest.problems.stereo_pose.replay import replay_model
+from debrisest.problems.stereo_pose.truth import draw_guess, simulate_truth
+from debrisest.problems.tumbling.attitude import TumblingAttitude, Variances
 from debrisest.recovery.basis_pursuit import basis_pursuit
 from debrisest.recovery.fourier import l1_norm
 

@@ -14,5 +14,5 @@ pytest -n auto
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
 debrisest sweep configs/*.yaml --runs 20 --check --out "$results" >"$results/tables.txt"
-debrisest plot configs/*.yaml --runs 20 --case 1 --case fig4 --case B --out "$results" >/dev/null
+debrisest plot configs/*.yaml --runs 20 --case 1 --case fig4 --case B --case nominal --out "$results" >/dev/null
 echo "all checks passed"

@@ -15,7 +15,7 @@ from debrisest.parts.recoveries import BasisPursuit
 from debrisest.parts.sensors import FeaturePoints
 from debrisest.parts.starts import FirstSamples
 from debrisest.plan import Selection, plan
-from debrisest.problems.tumbling_attitude import TumblingAttitude
+from debrisest.problems.tumbling.attitude import TumblingAttitude
 from debrisest.scenario.load import load_scenario
 
 ONE = ("--case", "slow", "--estimator", "triad")

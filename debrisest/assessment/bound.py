@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.replay.replay_model import ReplayModel
 
 _BLOCK = 10  # runs at a time, for the sake of memory
 _OUTLIER = 7.0

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.filters.landmark_model import LandmarkModel, Rows, Sights
+from debrisest.filters.landmarks.landmark_model import LandmarkModel, Rows, Sights
 from debrisest.filters.scaled import scaled_inverse
 
 _BLOCK = 16  # frames whose rows are held at a time

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.model import Model
-from debrisest.filters.scan_model import ScanModel
 from debrisest.outcome import Outcome
 
 

@@ -6,10 +6,10 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from debrisest.arrays import Array
-from debrisest.filters.association import associated, jointly_associated
-from debrisest.filters.association_weights import Misses, Validation
+from debrisest.filters.association.scan_model import ScanModel
+from debrisest.filters.association.single import associated, jointly_associated
+from debrisest.filters.association.weights import Misses, Validation
 from debrisest.filters.history import History
-from debrisest.filters.scan_model import ScanModel
 from debrisest.parts.filtered import filtered
 from debrisest.parts.filters import KeptTimes, kept_epochs
 from debrisest.roles import Filtered, FilterPart, Given, Positive

@@ -10,12 +10,12 @@ from pydantic import Field, model_validator
 from debrisest.arrays import Array, Data
 from debrisest.assessment.landmark_bound import landmark_bound
 from debrisest.clock import Clock
-from debrisest.filters.growing_windows import Window
-from debrisest.filters.landmark_filter import Annealing, Landmarked, landmark_filter
-from debrisest.filters.landmark_model import LandmarkModel, joined, points_of, split
-from debrisest.filters.landmark_start import Batch, Started, StartStatus, batch_start
-from debrisest.filters.landmark_update import Belief, Rule
-from debrisest.filters.replay_estimates import ReplayStatus
+from debrisest.filters.landmarks.batch_start import Batch, Started, StartStatus, batch_start
+from debrisest.filters.landmarks.growing_windows import Window
+from debrisest.filters.landmarks.landmark_filter import Annealing, Landmarked, landmark_filter
+from debrisest.filters.landmarks.landmark_model import LandmarkModel, joined, points_of, split
+from debrisest.filters.landmarks.update import Belief, Rule
+from debrisest.filters.replay.estimates import ReplayStatus
 from debrisest.outcome import sentences
 from debrisest.parts.filters import KeptTimes, kept_epochs
 from debrisest.roles import Filtered, FilterPart, Given, NonNegative, Positive

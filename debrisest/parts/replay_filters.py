@@ -7,9 +7,9 @@ from pydantic import Field
 
 from debrisest.arrays import Data
 from debrisest.assessment.bound import paired_errors
-from debrisest.filters.replay import RATIO, replay, smooth
-from debrisest.filters.replay_estimates import ReplayStatus
-from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.replay.estimates import ReplayStatus
+from debrisest.filters.replay.replay import RATIO, replay, smooth
+from debrisest.filters.replay.replay_model import ReplayModel
 from debrisest.outcome import sentences
 from debrisest.parts.filters import KeptTimes, kept_epochs
 from debrisest.roles import Filtered, FilterPart, Given

@@ -9,8 +9,8 @@ from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.attitude.points import wahba
 from debrisest.clock import Clock
-from debrisest.problems.tumbling_attitude import Variances
-from debrisest.problems.tumbling_points import MotionVariances
+from debrisest.problems.tumbling.attitude import Variances
+from debrisest.problems.tumbling.points import MotionVariances
 from debrisest.roles import StartPart
 
 

@@ -12,14 +12,14 @@ from debrisest.dynamics.kepler import MU_EARTH
 from debrisest.dynamics.relative_orbit import leader_orbit, relative_acceleration
 from debrisest.dynamics.relative_rotation import rotate
 from debrisest.filters.extended import extended
-from debrisest.problems import stereo_pose_model as stereo_pose
-from debrisest.problems.stereo_pose_additive import (
+from debrisest.problems.stereo_pose import model as stereo_pose
+from debrisest.problems.stereo_pose.additive import (
     additive_model,
     first_order_transition,
     process_jacobian,
 )
-from debrisest.problems.stereo_pose_replay import replay_model
-from debrisest.problems.stereo_pose_truth import draw_guess, simulate_truth
+from debrisest.problems.stereo_pose.replay import replay_model
+from debrisest.problems.stereo_pose.truth import draw_guess, simulate_truth
 from debrisest.sensors import stereo
 
 AXIS, ECCENTRICITY = 7.17e6, 0.05

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from debrisest.filters.association import associated, jointly_associated, labelled
-from debrisest.filters.association_weights import Validation
+from debrisest.filters.association.scan_model import ScanModel
+from debrisest.filters.association.single import associated, jointly_associated, labelled
+from debrisest.filters.association.weights import Validation
 from debrisest.filters.extended import extended
 from debrisest.filters.history import FilterStatus
 from debrisest.filters.model import Model
-from debrisest.filters.scan_model import ScanModel
 
 RUNS, EPOCHS, SENSORS = 6, 25, 3
 F = np.eye(4) + np.eye(4, k=2)

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from debrisest.filters.association_weights import Validation, probabilistic
-from debrisest.filters.joint_association import MOST_TRACKS, exclusive, joint
+from debrisest.filters.association.joint import MOST_TRACKS, exclusive, joint
+from debrisest.filters.association.weights import Validation, probabilistic
 from debrisest.parts.detections import MOST_COMPANIONS
 
 RULE = Validation(gate=9.0, detection_probability=0.8)

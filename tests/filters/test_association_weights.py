@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import chi2, multivariate_normal
 
-from debrisest.filters.association_weights import (
+from debrisest.filters.association.weights import (
     Validation,
     absence_weight,
     nearest,

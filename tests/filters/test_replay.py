@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from debrisest.filters.evidence import linearize, weigh
-from debrisest.filters.gauss_newton import gauss_newton
-from debrisest.filters.replay import anchors, replay, smooth
-from debrisest.filters.replay_estimates import ReplayStatus
-from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.replay.estimates import ReplayStatus
+from debrisest.filters.replay.evidence import linearize, weigh
+from debrisest.filters.replay.gauss_newton import gauss_newton
+from debrisest.filters.replay.replay import anchors, replay, smooth
+from debrisest.filters.replay.replay_model import ReplayModel
 
 F = np.array([[1.0, 0.5], [-0.1, 0.95]])
 H = np.array([[1.0, 0.0], [0.3, 1.0], [0.0, -2.0]])

@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from debrisest.clock import Clock
-from debrisest.filters.scan_model import ScanModel
+from debrisest.filters.association.scan_model import ScanModel
 from debrisest.parts.association_filters import (
     AssociationFilter,
     JointAssociation,

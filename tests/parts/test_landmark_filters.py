@@ -16,7 +16,7 @@ from debrisest.parts.orbits import KeplerOrbit
 from debrisest.parts.relative_ellipse import ClosedEllipse
 from debrisest.parts.shape_guess import Guessed, ShapeGuess
 from debrisest.parts.targets import RigidPoints
-from debrisest.problems.camera_range_minimal import CameraRangeMinimal
+from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.roles import Given
 
 CLOCK = Clock(300.0, 5.0)

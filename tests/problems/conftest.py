@@ -6,12 +6,12 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from debrisest.filters.replay import replay
-from debrisest.problems import stereo_pose_model as stereo_pose
-from debrisest.problems import tumbling_points_motion as body
-from debrisest.problems.stereo_pose_replay import replay_model
-from debrisest.problems.stereo_pose_truth import draw_guess, simulate_truth
-from debrisest.problems.tumbling_points_inertia import log_tensor
+from debrisest.filters.replay.replay import replay
+from debrisest.problems.stereo_pose import model as stereo_pose
+from debrisest.problems.stereo_pose.replay import replay_model
+from debrisest.problems.stereo_pose.truth import draw_guess, simulate_truth
+from debrisest.problems.tumbling import points_motion as body
+from debrisest.problems.tumbling.points_inertia import log_tensor
 
 ORBIT = (7.17e6, 0.05, 0.0)
 POINTS = 5

@@ -8,7 +8,7 @@ from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.dynamics.pointing import camera_axes, camera_rate
 from debrisest.filters.unscented import UnscentedParameters, unscented
-from debrisest.problems.camera_range_redundant_model import (
+from debrisest.problems.camera_range.redundant_model import (
     CORE,
     INERTIA,
     POSITION,

@@ -6,8 +6,8 @@ import pytest
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.dynamics import kepler, log_inertia
-from debrisest.problems.camera_range_data import require_measurable
-from debrisest.problems.camera_range_score import scored_features, scores
+from debrisest.problems.camera_range.data import require_measurable
+from debrisest.problems.camera_range.score import scored_features, scores
 from debrisest.target.start_frame import InStartFrame, in_start_frame
 
 RUNS, EPOCHS, POINTS = 2, 6, 7

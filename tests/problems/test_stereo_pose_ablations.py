@@ -5,8 +5,8 @@ import pytest
 
 from debrisest.attitude import quaternion
 from debrisest.filters.extended import extended
-from debrisest.problems import stereo_pose_model as stereo_pose
-from debrisest.problems.stereo_pose_additive import additive_model
+from debrisest.problems.stereo_pose import model as stereo_pose
+from debrisest.problems.stereo_pose.additive import additive_model
 
 RUNS, EPOCHS = 40, 60
 NO_ACCELERATION = stereo_pose.Shown()

@@ -5,12 +5,12 @@ import pytest
 
 from debrisest.assessment.bound import paired_errors
 from debrisest.assessment.consistency import chart_free
-from debrisest.filters.evidence import linearize, weigh
-from debrisest.filters.gauss_newton import move
-from debrisest.filters.replay import replay, smooth
-from debrisest.filters.replay_estimates import ReplayStatus
-from debrisest.problems import stereo_pose_model as stereo_pose
-from debrisest.problems.stereo_pose_replay import replay_model
+from debrisest.filters.replay.estimates import ReplayStatus
+from debrisest.filters.replay.evidence import linearize, weigh
+from debrisest.filters.replay.gauss_newton import move
+from debrisest.filters.replay.replay import replay, smooth
+from debrisest.problems.stereo_pose import model as stereo_pose
+from debrisest.problems.stereo_pose.replay import replay_model
 
 POINTS = 5
 

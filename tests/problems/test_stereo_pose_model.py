@@ -5,9 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from debrisest.filters.unscented import unscented
-from debrisest.problems import stereo_pose_additive as additive
-from debrisest.problems import stereo_pose_model as stereo_pose
-from debrisest.problems.stereo_pose_truth import draw_guess, simulate_truth
+from debrisest.problems.stereo_pose import additive
+from debrisest.problems.stereo_pose import model as stereo_pose
+from debrisest.problems.stereo_pose.truth import draw_guess, simulate_truth
 
 ORBIT = (7.17e6, 0.05, 0.0)
 SHOWN = stereo_pose.Shown(acceleration=True)

@@ -5,11 +5,11 @@ import pytest
 
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
-from debrisest.problems import stereo_pose_chart as chart
-from debrisest.problems import stereo_pose_data as of_data
-from debrisest.problems.stereo_pose import StereoPose, StereoPoseAdditive
-from debrisest.problems.stereo_pose_model import Q, measurement
-from debrisest.problems.stereo_pose_score import plain_covariance, scores
+from debrisest.problems.stereo_pose import chart
+from debrisest.problems.stereo_pose import data as of_data
+from debrisest.problems.stereo_pose.model import Q, measurement
+from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditive
+from debrisest.problems.stereo_pose.score import plain_covariance, scores
 from debrisest.roles import Filtered
 
 POINTS, EPOCHS = 5, 4

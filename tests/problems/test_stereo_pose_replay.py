@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from debrisest.attitude import quaternion
-from debrisest.problems import stereo_pose_model as stereo_pose
+from debrisest.problems.stereo_pose import model as stereo_pose
 
 POINTS = 5
 

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from debrisest.assessment.principal_axes import RELABELINGS
 from debrisest.clock import Clock
 from debrisest.parts.filters import Unscented
-from debrisest.problems import tumbling_attitude as problem
+from debrisest.problems.tumbling import attitude as problem
 from debrisest.roles import Given
 
 BODIES = {

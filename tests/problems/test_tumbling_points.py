@@ -8,11 +8,11 @@ from hypothesis.extra import numpy as hnp
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from debrisest.problems import tumbling_points_motion as body
-from debrisest.problems.tumbling_points_axes import in_principal_axes, rate_by_errors, sigmas
-from debrisest.problems.tumbling_points_contrasts import compared, contrasts
-from debrisest.problems.tumbling_points_inertia import log_inertia, log_tensor
-from debrisest.problems.tumbling_points_replay import replay_model
+from debrisest.problems.tumbling import points_motion as body
+from debrisest.problems.tumbling.points_axes import in_principal_axes, rate_by_errors, sigmas
+from debrisest.problems.tumbling.points_contrasts import compared, contrasts
+from debrisest.problems.tumbling.points_inertia import log_inertia, log_tensor
+from debrisest.problems.tumbling.points_replay import replay_model
 
 POINTS = np.array([[0, 0, 0], [2, 0, 0], [0.5, 0, -1], [-1, 2, 0.3], [0.2, -1, 2], [1, 1, 1.0]])
 TIMES = np.arange(0.0, 60.0)

@@ -9,8 +9,8 @@ from debrisest.assessment.consistency import interval, normalized_square
 from debrisest.clock import Clock
 from debrisest.parts.replay_filters import Efficient
 from debrisest.parts.starts import FirstPoints
-from debrisest.problems.tumbling_points import MotionVariances, TumblingPoints
-from debrisest.problems.tumbling_points_inertia import log_tensor
+from debrisest.problems.tumbling.points import MotionVariances, TumblingPoints
+from debrisest.problems.tumbling.points_inertia import log_tensor
 from debrisest.roles import Given
 
 # in their own frame: x from the first to the second, y normal to the first three

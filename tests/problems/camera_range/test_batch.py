@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.stats import chi2
 
-from debrisest.filters.growing_windows import Window
-from debrisest.filters.landmark_start import StartStatus
+from debrisest.filters.landmarks.batch_start import StartStatus
+from debrisest.filters.landmarks.growing_windows import Window
 
 RATE = slice(3, 6)
 SHORT = [Window(10, 1), Window(20, 1), Window(40, 1)]

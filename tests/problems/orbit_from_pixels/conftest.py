@@ -13,7 +13,7 @@ from debrisest.dynamics import kepler, perturbed_orbit
 from debrisest.parts.detections import Detections
 from debrisest.parts.starts import Drawn
 from debrisest.parts.tracking_sensors import AttitudeKnowledge, OrbitGuess
-from debrisest.problems.orbit_from_pixels import OrbitFromPixels
+from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels
 
 
 class TwoObservers:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from debrisest.filters.association import associated, jointly_associated
-from debrisest.filters.association_weights import Validation
+from debrisest.filters.association.single import associated, jointly_associated
+from debrisest.filters.association.weights import Validation
 
 PRINTED = Validation(gate=5.0, detection_probability=0.7, misses="printed")
 CORRECTED = PRINTED._replace(misses="corrected")

@@ -1,0 +1,1 @@
+"""Filters that are handed points without labels."""

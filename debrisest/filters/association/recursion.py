@@ -1,0 +1,120 @@
+"""Recursion of the association filters: predict, then update sensor by sensor."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, IntArray
+from debrisest.filters.association.scan_model import ScanModel
+from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh, update
+from debrisest.filters.history import History, HistoryWriter, Tally
+
+
+class Rule(NamedTuple):
+    """How detections are judged, and about what the model is linearised."""
+
+    gate: float
+    weigh: Weigh
+    stacked: bool
+    """Whether the sensors update together."""
+    relinearise: int
+    """Epochs from one linearisation about the estimate to the next, 0: never."""
+    truth: Array | None
+    """What to linearise about instead, (run, time, n)."""
+
+
+class _Seen(NamedTuple):
+    """What the target's track made of the detections of an epoch, each (run,)."""
+
+    nis: Array
+    dof: IntArray
+    rejected: IntArray
+    validated: IntArray
+
+    def plus(self, judged: Judged, d: int) -> "_Seen":
+        """Add the detections of further sensors."""
+        probability, distance = judged.probability[:, 0], judged.distance[:, 0]
+        detected = probability.sum(-1)
+        weighed = np.where(probability > 0.0, probability * distance, 0.0).sum(-1)
+        squared = np.where(detected > 0.0, weighed / detected, 0.0)
+        outside = judged.present[:, 0] & ~judged.valid[:, 0]
+        return _Seen(
+            self.nis + squared.sum(-1),
+            self.dof + d * (detected > 0.0).sum(-1),
+            self.rejected + d * outside.sum((-2, -1)),
+            self.validated + judged.valid[:, 0].sum((-2, -1)),
+        )
+
+
+def filtered(
+    model: ScanModel,
+    state: Array,
+    covariance: Array,
+    scans: Array,
+    rule: Rule,
+    keep: Sequence[int],
+) -> History:
+    """Return the history of track 0; `state` (run, track, n), else as `associated`."""
+    writer = HistoryWriter(model, state[:, 0], covariance[:, 0], scans.shape[1], keep)
+    repairs = np.zeros(len(state), dtype=np.int64)
+    tracks, nominal = Tracks(state, covariance), state
+    with np.errstate(all="ignore"):
+        for k in range(scans.shape[1]):
+            tracks, nominal = _live(writer, tracks, nominal)
+            if k > 0:
+                tracks, nominal = _predict(model, tracks, nominal, k - 1)
+            if rule.truth is not None:
+                nominal = rule.truth[:, None, k]
+            tracks, seen = _look(model, tracks, nominal, scans[:, k], rule, k)
+            if rule.relinearise > 0 and (k + 1) % rule.relinearise == 0:
+                nominal = tracks.state
+            tally = Tally(
+                *(np.ones_like(repairs), seen.rejected, np.zeros_like(repairs)), seen.validated
+            )
+            target = tracks.state[:, 0], tracks.covariance[:, 0]
+            writer.record(k, *target, seen.nis, seen.dof, repairs, tally)
+    return writer.history()
+
+
+def _live(writer: HistoryWriter, tracks: Tracks, nominal: Array) -> tuple[Tracks, Array]:
+    """Replace the target of diverged runs by what the writer has for them."""
+    if writer.alive.all():
+        return tracks, nominal
+    state, covariance = writer.live(tracks.state[:, 0], tracks.covariance[:, 0])
+    live = Tracks(tracks.state.copy(), tracks.covariance.copy())
+    live.state[:, 0], live.covariance[:, 0] = state, covariance
+    return live, np.where(writer.alive[:, None, None], nominal, live.state)
+
+
+def _predict(model: ScanModel, tracks: Tracks, nominal: Array, k: int) -> tuple[Tracks, Array]:
+    moved = model.process(nominal, k)
+    transition = np.broadcast_to(model.process_jacobian(nominal, k), tracks.covariance.shape)
+    transposed = np.swapaxes(transition, -2, -1)
+    lag = (tracks.state - nominal)[..., None, :] @ transposed
+    covariance = transition @ tracks.covariance @ transposed
+    covariance = 0.5 * (covariance + np.swapaxes(covariance, -2, -1)) + model.process_noise
+    return Tracks(moved + lag[..., 0, :], covariance), moved
+
+
+def _look(
+    model: ScanModel, tracks: Tracks, nominal: Array, scan: Array, rule: Rule, k: int
+) -> tuple[Tracks, _Seen]:
+    """Update by all sensors; `scan` is (run, sensor, detection, d)."""
+    shown = model.points(nominal, k)
+    h = np.broadcast_to(model.points_jacobian(nominal, k), (*shown.shape, nominal.shape[-1]))
+    nothing = np.zeros(len(scan), dtype=np.int64)
+    seen = _Seen(nothing.astype(np.float64), nothing, nothing, nothing)
+    for group in _groups(shown.shape[-2], rule.stacked):
+        lag = tracks.state - nominal
+        predicted = shown[:, :, group] + (h[:, :, group] @ lag[:, :, None, :, None])[..., 0]
+        innovation = scan[:, None, group] - predicted[..., None, :]
+        part = Scan(innovation, h[:, :, group])
+        tracks, judged = update(tracks, part, model.noise, rule.gate, rule.weigh)
+        seen = seen.plus(judged, shown.shape[-1])
+    return tracks, seen
+
+
+def _groups(sensors: int, stacked: bool) -> list[slice]:
+    """Sensors that update together."""
+    return [slice(None)] if stacked else [slice(s, s + 1) for s in range(sensors)]

@@ -1,0 +1,1 @@
+"""Batch start and filter with landmarks that come and go."""

@@ -1,0 +1,169 @@
+"""Levenberg-Marquardt on the start of a landmark model over windows that grow.
+
+From a first guess that is far off, a long window has many minima and a short one few; each window
+begins where the one before ended. Landmarks join when they are seen for the first time.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.landmarks.cost import Cost, Prior, Unknowns, cost
+from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
+from debrisest.filters.replay.evidence import put, take
+from debrisest.filters.scaled import scaled_solve
+
+_FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
+_FEW, _PATIENCE = 5, 3
+_DECREASE = 0.05
+"""Predicted decrease of the cost below which a window is done."""
+
+
+class Window(NamedTuple):
+    """Epochs from 0 to ``last``, of which every ``stride``-th counts."""
+
+    last: int
+    stride: int
+
+    @property
+    def frames(self) -> IntArray:
+        """Return the epochs that count; the last one always does."""
+        return np.arange(self.last, -1, -self.stride)[::-1]
+
+
+class Fit(NamedTuple):
+    """Where the descent ended in the last window, and the prior that it had."""
+
+    at: Unknowns
+    prior: Prior
+    found: Cost
+    converged: BoolArray
+
+    @property
+    def ratio(self) -> Array:
+        """Cost per degree of freedom (run,), about one for the right minimum."""
+        return np.asarray(self.found.value / np.maximum(self.found.freedom, 1))
+
+    def of(self, runs: IntArray) -> "Fit":
+        """Return the fits of some runs."""
+        parts = take(self.at, runs), take(self.prior, runs), take(self.found, runs)
+        return Fit(*parts, self.converged[runs])
+
+    def put(self, runs: IntArray, other: "Fit") -> None:
+        """Replace those of some runs, in place."""
+        for mine, new in zip(
+            (self.at, self.prior, self.found), (other.at, other.prior, other.found)
+        ):
+            put(mine, runs, new)
+        self.converged[runs] = other.converged
+
+
+def fresh(model: LandmarkModel, parameters: Array, prior: Prior) -> tuple[Unknowns, Prior]:
+    """Unknowns at the given parameters, without any landmark yet; the prior is a copy."""
+    runs = len(parameters)
+    points = np.zeros((runs, model.landmarks, 3))
+    at = Unknowns(parameters.copy(), points, np.zeros(points.shape[:2], dtype=np.bool_))
+    return at, Prior(*(values.copy() for values in prior))
+
+
+def fit(
+    model: LandmarkModel,
+    sights: Sights,
+    at: Unknowns,
+    prior: Prior,
+    windows: Sequence[Window],
+    iterations: int,
+    robust: bool,
+) -> Fit:
+    """Minimise the cost over the windows in turn, at most ``iterations`` linearisations each.
+
+    The last one, from which no other will go on, may take `_PATIENCE` times as many.
+    """
+    for window in windows:
+        at, prior = place(model, sights, at, prior, window.last)
+        most = iterations if window is not windows[-1] else _PATIENCE * iterations
+        found, converged = _descend(model, sights, at, prior, window.frames, most, robust)
+    return Fit(at, prior, found, converged)
+
+
+def place(
+    model: LandmarkModel, sights: Sights, at: Unknowns, prior: Prior, last: int
+) -> tuple[Unknowns, Prior]:
+    """Give a place to the landmarks that were seen for the first time up to epoch ``last``."""
+    seen: BoolArray = np.asarray(sights.seen[:, : last + 1].any(-1))
+    new = seen.any(1) & ~at.placed
+    if not new.any():
+        return at, prior
+    first = _typical_sighting(sights, seen)
+    cores, _ = model.trajectory(model.start(at.parameters)[0], last)
+    runs, landmarks = np.arange(len(first))[:, None], np.arange(first.shape[1])
+    points, _, _ = model.place(cores[runs, first], sights.shown[runs, first, landmarks], first)
+    found = Unknowns(at.parameters, np.where(new[..., None], points, at.points), at.placed | new)
+    n_x = at.parameters.shape[-1]
+    mean = prior.mean.copy()
+    mean[:, n_x:] = np.where(np.repeat(new, 3, axis=-1), found.vector[:, n_x:], mean[:, n_x:])
+    return found, prior._replace(mean=mean)
+
+
+def _typical_sighting(sights: Sights, seen: BoolArray) -> IntArray:
+    """Epoch (run, N), of the first few sightings, of the one nearest to their median.
+
+    So that a false match among them is not taken for the landmark.
+    """
+    order = np.where(seen, np.cumsum(seen, axis=1), seen.shape[1] + 1)
+    epochs = np.argsort(order, axis=1, kind="stable")[:, :_FEW]
+    known = np.take_along_axis(seen, epochs, axis=1)[..., None]
+    shown = np.take_along_axis(sights.shown, epochs[..., None], axis=1)
+    middle = np.nanmedian(np.where(known | ~known.any(1, keepdims=True), shown, np.nan), axis=1)
+    distance = np.where(known, (shown - middle[:, None]) ** 2, np.inf).sum(-1)
+    nearest = np.argmin(distance, axis=1)
+    return np.take_along_axis(epochs, nearest[:, None], axis=1)[:, 0]
+
+
+def _descend(
+    model: LandmarkModel,
+    sights: Sights,
+    at: Unknowns,
+    prior: Prior,
+    frames: IntArray,
+    iterations: int,
+    robust: bool,
+) -> tuple[Cost, BoolArray]:
+    """Lower the cost of every run, each with a damping of its own; ``at`` is changed in place."""
+    best = cost(model, sights, prior, at, frames, robust)
+    damping = np.full(len(best.value), _FIRST_DAMPING)
+    active = np.isfinite(best.value)
+    for _ in range(iterations - 1):
+        runs = np.flatnonzero(active)
+        if len(runs) == 0:
+            break
+        here = take(best, runs)
+        step, promise = _step(here, damping[runs])
+        trial = take(at, runs).moved(step)
+        part = model.of(runs), sights.at(runs), take(prior, runs)
+        new = cost(*part, trial, frames, robust)
+        better = new.value <= here.value
+        put(best, runs[better], take(new, np.flatnonzero(better)))
+        put(at, runs[better], take(trial, np.flatnonzero(better)))
+        damping[runs] = _next_damping(damping[runs], better)
+        active[runs] = ~((promise < _DECREASE) | (damping[runs] >= _MOST_DAMPING))
+    converged = np.isfinite(best.value) & ~active
+    best.value[np.isnan(best.value)] = np.inf
+    return best, converged
+
+
+def _step(at: Cost, damping: Array) -> tuple[Array, Array]:
+    """Damped step and the decrease of the cost that it promises."""
+    size = np.diagonal(at.information, 0, -2, -1)
+    damped = at.information.copy()
+    index = np.arange(size.shape[-1])
+    damped[:, index, index] += damping[:, None] * size
+    step = scaled_solve(damped, at.gradient)
+    promise = (at.gradient * step).sum(-1) + damping * (size * step**2).sum(-1)
+    return step, promise
+
+
+def _next_damping(damping: Array, better: BoolArray) -> Array:
+    return np.where(better, np.maximum(damping / 10.0, _LEAST_DAMPING), 10.0 * damping)

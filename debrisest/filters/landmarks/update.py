@@ -1,0 +1,205 @@
+"""Iterated, gated update of a core and its landmarks with one frame."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import gammainccinv
+
+from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.covariance import solve
+from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
+from debrisest.filters.missing import drop_missing
+
+
+class Belief(NamedTuple):
+    """Core (run, n), points (run, N, 3), covariance of their errors, zero for absent landmarks."""
+
+    core: Array
+    points: Array
+    covariance: Array
+
+
+class Rule(NamedTuple):
+    """How a frame is used."""
+
+    iterations: int = 3
+    tolerance: float = 0.1
+    """Iterations end once no error moves by this part of its sigma."""
+    false_alarm: float | None = 1e-3
+    """Probability with which the gate rejects a landmark that was seen well; none: no gate."""
+
+
+class Frame(NamedTuple):
+    """Figures of a frame, (run,) each, and which landmarks were accepted, (run, N)."""
+
+    nis: Array
+    dof: IntArray
+    rejected: IntArray
+    accepted: BoolArray
+    iterations: IntArray
+
+
+class _Linear(NamedTuple):
+    """Innovation (run, m), derivative (run, m, n_e) and noise (run, m, m) at a state."""
+
+    innovation: Array
+    response: Array
+    noise: Array
+
+
+class _Step(NamedTuple):
+    """``P H^T``, S, the gain, and the correction of the prior's state."""
+
+    cross: Array
+    total: Array
+    gain: Array
+    correction: Array
+
+
+def update(
+    model: LandmarkModel,
+    prior: Belief,
+    sights: Sights,
+    k: int,
+    rule: Rule,
+    inflation: float = 1.0,
+) -> tuple[Belief, Frame]:
+    """Update with frame k, whose ``sights (run, ...)`` may be masked; noise variance inflated.
+
+    Gauss-Newton steps x_i+1 = x- [+] K_i (nu(x_i) - H_i (x- [-] x_i)). The gate judges each
+    landmark by its innovation at x-. The covariance update is Joseph's, multiplied out:
+    ``P - K W^T - W K^T`` with ``W = P H^T - K S / 2`` costs a quarter and depends on errors of the
+    gain in second order only, too.
+    """
+    linear = _linearise(model, prior.core, prior.points, sights, k, inflation)
+    used, accepted = _gated(model, prior, sights, linear, rule)
+    rejected = sights.seen.sum((-2, -1)) + sights.common_seen.sum(-1) - used.sum(-1)
+    step = _gauss_newton(prior, linear, used)
+    innovation = np.where(used, linear.innovation, 0.0)
+    nis = (innovation * solve(step.total, innovation[..., None])[..., 0]).sum(-1)
+    count = _iterate(model, prior, sights, k, rule, inflation, used, step)
+    core, points = _moved(model, prior, step.correction)
+    change = step.gain @ np.swapaxes(step.cross - 0.5 * step.gain @ step.total, -1, -2)
+    covariance = prior.covariance - change - np.swapaxes(change, -1, -2)
+    return Belief(core, points, covariance), Frame(nis, used.sum(-1), rejected, accepted, count)
+
+
+def _iterate(
+    model: LandmarkModel,
+    prior: Belief,
+    sights: Sights,
+    k: int,
+    rule: Rule,
+    inflation: float,
+    used: BoolArray,
+    step: _Step,
+) -> IntArray:
+    """Go on from the first step, changed in place, until no run moves; number of steps (run,)."""
+    last, moving = np.zeros_like(step.correction), np.asarray(used.any(-1))
+    count = np.ones(len(moving), dtype=np.int64)
+    variance = np.diagonal(prior.covariance, 0, -2, -1)
+    for _ in range(rule.iterations - 1):
+        left = variance - (step.cross * step.gain).sum(-1)
+        sigma = np.sqrt(np.maximum(left, 1e-12 * np.abs(variance)))
+        moving = moving & (np.abs(step.correction - last) > rule.tolerance * sigma).any(-1)
+        if not moving.any():
+            break
+        core, points = _moved(model, prior, step.correction)
+        linear = _linearise(model, core, points, sights, k, inflation)
+        shift = (prior.points - points).reshape(len(core), -1)
+        lag = np.concatenate([model.difference(prior.core, core), shift], axis=-1)
+        residual = linear.innovation - (linear.response @ lag[..., None])[..., 0]
+        new = _gauss_newton(prior, linear._replace(innovation=residual), used)
+        last = step.correction.copy()
+        for kept, values in zip(step, new):
+            kept[moving] = values[moving]
+        count += moving
+    return count
+
+
+def _linearise(
+    model: LandmarkModel, core: Array, points: Array, sights: Sights, k: int, inflation: float
+) -> _Linear:
+    rows = model.rows(core[:, None], points[:, None], np.array([k]))
+    runs, landmarks, each, n_c = *rows.shown[:, 0].shape, model.errors
+    count = landmarks * each
+    m = count + model.common
+    response = np.zeros((runs, m, n_c + 3 * landmarks))
+    response[:, :count, :n_c] = rows.by_core.reshape(runs, count, n_c)
+    row = np.arange(count).reshape(landmarks, each, 1)
+    column = n_c + np.arange(3 * landmarks).reshape(landmarks, 1, 3)
+    response[:, row, column] = rows.by_point[:, 0]
+    response[:, count:, :n_c] = rows.common_by_core[:, 0]
+    innovation = np.concatenate(
+        [
+            (sights.shown - rows.shown[:, 0]).reshape(runs, count),
+            sights.common - rows.common[:, 0],
+        ],
+        axis=-1,
+    )
+    sigma = np.concatenate([np.tile(model.sigma, landmarks), model.common_sigma])
+    noise = np.tile(np.diag(sigma**2), (runs, 1, 1))
+    if rows.shared.shape[-1]:
+        shared = rows.shared.reshape(runs, count, -1)
+        noise[:, :count, :count] += shared @ np.swapaxes(shared, -1, -2)
+    return _Linear(innovation, response, inflation * noise)
+
+
+def _gated(
+    model: LandmarkModel, prior: Belief, sights: Sights, linear: _Linear, rule: Rule
+) -> tuple[BoolArray, BoolArray]:
+    """Components to use (run, m), and landmarks seen that passed (run, N)."""
+    runs, landmarks, each = sights.seen.shape
+    seen = np.concatenate([sights.seen.reshape(runs, -1), sights.common_seen], axis=-1)
+    shown: BoolArray = np.asarray(sights.seen.any(-1))
+    if rule.false_alarm is None or not shown.any():
+        return seen, shown
+    first = np.arange(landmarks * each).reshape(landmarks, each)
+    blocks = _blocks(model, prior, linear, first)
+    nu, _, blocks = drop_missing(
+        sights.seen,
+        linear.innovation[:, first],
+        linear.innovation[:, first][..., None, :],
+        blocks + linear.noise[:, first[:, :, None], first[:, None, :]],
+    )
+    squares = (
+        nu * solve(blocks.reshape(-1, each, each), nu.reshape(-1, each, 1)).reshape(nu.shape)
+    ).sum(-1)
+    limits = 2.0 * gammainccinv(0.5 * np.maximum(np.arange(each + 1), 1), rule.false_alarm)
+    accepted: BoolArray = shown & (squares <= limits[sights.seen.sum(-1)])
+    used = seen.copy()
+    used[:, : landmarks * each] &= np.repeat(accepted, each, axis=-1)
+    return used, accepted
+
+
+def _blocks(model: LandmarkModel, prior: Belief, linear: _Linear, first: IntArray) -> Array:
+    """Covariance (run, N, r, r) of each landmark's predicted components."""
+    n_c = model.errors
+    response, covariance = linear.response[:, : first.size], prior.covariance
+    runs, (landmarks, each) = len(response), first.shape
+    spread = (response @ covariance).reshape(runs, landmarks, each, -1)
+    by_core = response[..., :n_c].reshape(runs, landmarks, each, n_c)
+    column = n_c + np.arange(3 * landmarks).reshape(landmarks, 1, 3)
+    by_point = response[:, first[:, :, None], column]
+    near = np.take_along_axis(spread, np.broadcast_to(column, (runs, landmarks, each, 3)), axis=-1)
+    return np.asarray(
+        spread[..., :n_c] @ np.swapaxes(by_core, -1, -2) + near @ np.swapaxes(by_point, -1, -2)
+    )
+
+
+def _gauss_newton(prior: Belief, linear: _Linear, used: BoolArray) -> _Step:
+    """Step from the prior, without what is not used."""
+    innovation, noise = linear.innovation, linear.noise
+    response = np.swapaxes(linear.response, -1, -2)
+    if not used.all():
+        innovation, response, noise = drop_missing(used, innovation, response, noise)
+    cross = prior.covariance @ response
+    total = np.swapaxes(response, -1, -2) @ cross + noise
+    gain = np.swapaxes(solve(total, np.swapaxes(cross, -1, -2)), -1, -2)
+    return _Step(cross, total, gain, (gain @ innovation[..., None])[..., 0])
+
+
+def _moved(model: LandmarkModel, prior: Belief, correction: Array) -> tuple[Array, Array]:
+    n_c = model.errors
+    shift = correction[:, n_c:].reshape(prior.points.shape)
+    return model.retract(prior.core, correction[:, :n_c]), prior.points + shift

@@ -1,0 +1,1 @@
+"""Maximum a posteriori over all frames so far, for motions without process noise."""

@@ -1,0 +1,74 @@
+"""Iterated extended Kalman filter in information form, in the state's own chart."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, IntArray
+from debrisest.filters import weights
+from debrisest.filters.replay.evidence import Evidence, normal_equations
+from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.scaled import scaled_inverse, scaled_solve
+
+FRAME_ITERATIONS = 3
+_FRAME_CONVERGED = 1e-3
+
+
+class Belief(NamedTuple):
+    """State (run, n), and information (run, n_e, n_e) in the state's own chart."""
+
+    state: Array
+    information: Array
+
+
+class Frame(NamedTuple):
+    """Figures of one epoch, (run,) each."""
+
+    nis: Array
+    dof: IntArray
+    rejected: IntArray
+
+
+def predict(model: ReplayModel, belief: Belief, k: int) -> Belief:
+    """Belief of epoch k from that of k - 1."""
+    states, sensitivity = model.trajectory(belief.state, k - 1, k)
+    state = states[:, -1]
+    transition = model.transition(sensitivity[:, -1], k - 1, k)
+    back = model.chart(belief.state) @ np.linalg.inv(transition) @ model.inverse_chart(state)
+    return Belief(state, np.swapaxes(back, -1, -2) @ belief.information @ back)
+
+
+def update(
+    model: ReplayModel, predicted: Belief, evidence: Evidence, k: int, iterations: int, gate: bool
+) -> tuple[Belief, Frame]:
+    """Iterated update with the measurements of epoch k, each run until it has converged.
+
+    With `gate`, the weights of the epoch's rejected rows are set to zero in `evidence`.
+    """
+    frame = slice(k, k + 1)
+    state, information = predicted.state.copy(), predicted.information.copy()
+    runs = np.arange(len(state))
+    for iteration in range(iterations):
+        at = state[runs]
+        states, sensitivity = model.trajectory(at, k, k)
+        shown, derivative = model.rows(states, sensitivity, k, np.array([k]))
+        back = model.inverse_chart(at)
+        rows = derivative / model.sigma[:, None] @ back[:, None]
+        residual = evidence.measured[runs, frame] - shown / model.sigma
+        if gate and iteration == 0:
+            spread = scaled_inverse(predicted.information)[:, None]
+            evidence.weight[:, frame] *= weights.innovation_gate(residual, rows, spread)
+        terms = normal_equations(rows, residual, evidence.weight[runs, frame])
+        total = predicted.information[runs] + terms[0]
+        offset = model.difference(predicted.state[runs], at)
+        right = terms[1] + (predicted.information[runs] @ offset[..., None])[..., 0]
+        step = scaled_solve(total, right)
+        decrement = (step * right).sum(-1)
+        if iteration == 0:
+            nis = terms[2] - decrement
+        state[runs], information[runs] = model.retract(at, step), total
+        runs = runs[~(decrement < _FRAME_CONVERGED)]
+        if len(runs) == 0:
+            break
+    used = (evidence.weight[:, k] > 0.0).sum(-1)
+    return Belief(state, information), Frame(nis, used, evidence.seen[:, k].sum(-1) - used)

@@ -1,0 +1,1 @@
+"""Pose, shape and inertia of an unknown target from one camera and a range."""

@@ -1,0 +1,200 @@
+"""The minimal problem of one camera and a range: every point once, rotation relative to Hill axes.
+
+Attitude, rate, position, velocity, five log-ratios of the inertia and the points: 17 + 3N errors,
+and constants of the sensors where they are asked for.
+"""
+
+from typing import ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from debrisest.arrays import Array, Data
+from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.dynamics import log_inertia
+from debrisest.dynamics.clohessy_wiltshire import mean_motion_of
+from debrisest.filters.landmarks.landmark_model import LandmarkModel
+from debrisest.problems.camera_range.model import (
+    CORE,
+    CORE_ERRORS,
+    LOG_INERTIA,
+    LOG_INERTIA_ERROR,
+    POSITION,
+    POSITION_ERROR,
+    RATE,
+    RATE_ERROR,
+    VELOCITY,
+    VELOCITY_ERROR,
+    CameraAttitude,
+    Q,
+    RangeModel,
+    Setup,
+)
+from debrisest.problems.camera_range.score import scores
+from debrisest.problems.camera_range.sights import landmark_model
+from debrisest.roles import Filtered, NonNegative, Positive, ProblemPart, Window
+from debrisest.target.start_frame import in_start_frame
+
+_SCORED = np.r_[RATE_ERROR, POSITION_ERROR, VELOCITY_ERROR, LOG_INERTIA_ERROR]
+_TOLD = ("restarts", "dropped", "fit")
+"""What filters tell of whole runs, for the tables."""
+_PLACES = {
+    "rate_b": (RATE, RATE_ERROR),
+    "relative_position_h": (POSITION, POSITION_ERROR),
+    "relative_velocity_h": (VELOCITY, VELOCITY_ERROR),
+    "log_inertia": (LOG_INERTIA, LOG_INERTIA_ERROR),
+}
+
+
+class CameraRangeMinimal(ProblemPart):
+    """17 + 3N errors; the camera's attitude is known, or implied by the position as in the paper.
+
+    Body axes are those of the camera at time zero, as it is known. Pixels are those of identified
+    points; the range is that to the centre of mass, to a surface which is nearer by a constant, or
+    to one of the points.
+    """
+
+    gives: ClassVar[tuple[str, ...]] = ("landmark_model",)
+    needs: ClassVar[tuple[str, ...]] = (
+        *("image_point", "measured_range", "landmark_range", "known_q_hc", "focal_px"),
+        *("orbit_position", "orbit_velocity", "start_relative_position_h"),
+    )
+    kind: Literal["camera_range_minimal"]
+    camera_attitude: CameraAttitude = "known"
+    range_to: RangeModel = "centre"
+    range_noise_m: Positive | None = Field(None, description="default: that of the sensor")
+    range_bias_m: float = Field(0.8, description="by which the surface is nearer than the centre")
+    range_bias_sigma_m: Positive = 0.3
+    camera_bias_sigma_deg: NonNegative = Field(0.0, description="of the known attitude; 0: exact")
+    gauge_sigma_deg: NonNegative = Field(0.0, description="of the attitude at time zero")
+    log_inertia_sigma: Positive = 0.5
+    gravity_gradient: bool = Field(True, description="whether the Earth turns the target")
+    point_sigma_m: Positive = Field(1.5, description="of a point, also along the line of sight")
+
+    def measurements(self, data: Data) -> Array:
+        """Return pixels point by point, then the range; or a range beside each point's pixels."""
+        pixels = data["image_point"]
+        epochs = pixels.shape[:2]
+        if self.range_to != "landmark":
+            flat = pixels.reshape(*epochs, -1)
+            return np.concatenate([flat, data["measured_range"][..., None]], axis=-1)
+        ranged = self._ranged(data) > 0.0
+        ranges = np.where(ranged, data["landmark_range"][..., None], np.nan)
+        return np.concatenate([pixels, ranges[..., None]], axis=-1).reshape(*epochs, -1)
+
+    def model(self, data: Data, clock: Clock) -> LandmarkModel:
+        """Return motion and sights of one clock step."""
+        start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+        white = float(data["attitude_noise"][0]) if self.camera_attitude == "known" else 0.0
+        return landmark_model(
+            Setup(
+                camera=quaternion.to_matrix(data["known_q_hc"]),
+                points=data["image_point"].shape[2],
+                mean_motion=mean_motion_of(*start),
+                step=clock.step,
+                focal=float(data["focal_px"][0]),
+                pixel_sigma=float(data["image_noise_px"][0]),
+                range_sigma=self.range_noise_m or float(data["range_noise"][0]),
+                attitude_sigma=white,
+                attitude=self.camera_attitude,
+                range_model=self.range_to,
+                camera_bias=self.camera_bias_sigma_deg > 0.0,
+                depth_sigma=self.point_sigma_m,
+                gravity_gradient=self.gravity_gradient,
+            )
+        )
+
+    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+        """Return the start (run, n) and its covariance (run, n_e, n_e).
+
+        The attitude is left to the model, which takes it from the camera's, and the points to the
+        images; the inertia is that of a sphere.
+        """
+        runs, points = guess["point_b"].shape[:2]
+        extras, extra_sigma = self._extras()
+        state = np.zeros((runs, CORE + len(extras) + 3 * points))
+        sigma = np.zeros((runs, CORE_ERRORS + len(extras) + 3 * points))
+        state[:, 0] = 1.0
+        for name in ("rate_b", "relative_position_h", "relative_velocity_h"):
+            where, error = _PLACES[name]
+            state[:, where], sigma[:, error] = guess[name], guess[f"{name}_sigma"]
+        state[:, CORE : CORE + len(extras)] = extras
+        sigma[:, :3] = np.radians(self.gauge_sigma_deg)
+        sigma[:, LOG_INERTIA_ERROR] = self.log_inertia_sigma
+        sigma[:, CORE_ERRORS : CORE_ERRORS + len(extras)] = extra_sigma
+        sigma[:, CORE_ERRORS + len(extras) :] = self.point_sigma_m
+        return state, sigma[..., None] ** 2 * np.eye(sigma.shape[-1])
+
+    def unpack(self, filtered: Filtered) -> Data:
+        """Return the estimated quantities by name, each with its sigma; landmarks may be absent."""
+        state, sigma, extras = filtered.state, filtered.sigma, len(self._extras()[0])
+        result: Data = {"q_hb": state[..., Q], "q_hb_sigma": _component_sigma(state, sigma)}
+        for name, (where, error) in _PLACES.items():
+            result[name], result[f"{name}_sigma"] = state[..., where], sigma[..., error]
+        points = state[..., CORE + extras :].reshape(*state.shape[:-1], -1, 3)
+        spread = sigma[..., CORE_ERRORS + extras :].reshape(points.shape)
+        result["point_b"] = points
+        result["point_b_sigma"] = np.where(np.isfinite(points), spread, np.nan)
+        if self.range_to == "bias":
+            result["range_bias"] = state[..., CORE]
+            result["range_bias_sigma"] = sigma[..., CORE_ERRORS]
+        if self.camera_bias_sigma_deg > 0.0:
+            result["camera_bias"] = state[..., CORE + extras - 3 : CORE + extras]
+            result["camera_bias_sigma"] = sigma[..., CORE_ERRORS + extras - 3 :][..., :3]
+        return result
+
+    def assess(self, data: Data, scored: Window) -> Data:
+        """Return errors against the truth, as they are and gauge-free, and consistency."""
+        told = {name: data[name] for name in _TOLD if name in data}
+        q_hc = self._start_camera(data) if "true_q_hc" in data else np.empty(0)
+        return told | scores(data, q_hc, _SCORED)
+
+    def truth(self, data: Data) -> Array | None:
+        """Return the true states (run, time, n), where they are known."""
+        if "true_q_ib" not in data:
+            return None
+        truth = in_start_frame(data, self._start_camera(data))
+        epochs = truth.rate.shape[:2]
+        constant = [log_inertia.log_ratios(truth.inertia), *self._true_extras(data)]
+        constant.append(truth.point.reshape(epochs[0], -1))
+        return np.concatenate(
+            [
+                *(truth.q_he, truth.rate, data["chaser_position_h"], data["chaser_velocity_h"]),
+                *(np.broadcast_to(c[:, None], (*epochs, c.shape[-1])) for c in constant),
+            ],
+            axis=-1,
+        )
+
+    def _start_camera(self, data: Data) -> Array:
+        """Attitude (run, 4) of the camera at time zero that defines the body axes."""
+        return data["known_q_hc" if self.camera_attitude == "known" else "true_q_hc"][:, 0]
+
+    def _ranged(self, data: Data) -> Array:
+        return np.eye(data["image_point"].shape[2])[data["landmark"].astype(np.int64)]
+
+    def _extras(self) -> tuple[list[float], list[float]]:
+        """First guess and sigma of the constants of the sensors."""
+        bias = self.range_to == "bias"
+        camera = 3 * (self.camera_bias_sigma_deg > 0.0)
+        sigma = [self.range_bias_sigma_m] * bias
+        sigma += [float(np.radians(self.camera_bias_sigma_deg))] * camera
+        return [self.range_bias_m] * bias + [0.0] * camera, sigma
+
+    def _true_extras(self, data: Data) -> list[Array]:
+        """The constants that fit the truth best, (run, .) each."""
+        result = []
+        if self.range_to == "bias":
+            distance = np.linalg.norm(data["chaser_position_h"], axis=-1)
+            result.append((distance - data["measured_range"]).mean(1, keepdims=True))
+        if self.camera_bias_sigma_deg > 0.0:
+            back = quaternion.conjugate(data["known_q_hc"])
+            result.append(quaternion.log(quaternion.multiply(back, data["true_q_hc"])).mean(1))
+        return result
+
+
+def _component_sigma(state: Array, sigma: Array) -> Array:
+    """1-sigma of the quaternion's components, as if its angles were uncorrelated."""
+    w, x, y, z = np.moveaxis(state[..., Q], -1, 0)
+    by_turn = np.stack([np.stack(r, -1) for r in ((x, y, z), (w, z, y), (z, w, x), (y, x, w))], -2)
+    return np.asarray(0.5 * np.sqrt((by_turn**2 @ sigma[..., :3, None] ** 2)[..., 0]))

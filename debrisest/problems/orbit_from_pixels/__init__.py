@@ -1,0 +1,1 @@
+"""Orbit of a piece of debris from the pixels of several satellites."""

@@ -1,0 +1,134 @@
+"""The orbit of a piece of debris from the pixels of several satellites' cameras."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from debrisest.arrays import Array, Data
+from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.filters.association.scan_model import ScanModel
+from debrisest.filters.association.single import labelled
+from debrisest.problems.orbit_from_pixels.model import ORBIT, Setup, scan_model
+from debrisest.problems.orbit_from_pixels.score import scores, true_bias
+from debrisest.roles import Filtered, NonNegative, Positive, ProblemPart, Window
+
+
+class OrbitFromPixels(ProblemPart):
+    """The problem of this file, its noises and what of the data it uses."""
+
+    needs = (
+        *("observer_position", "known_q_ic", "camera_scale", "section", "detected_pixel"),
+        *("start_orbit_position", "start_orbit_velocity"),
+    )
+    gives = ("scan_model",)
+    kind: Literal["orbit_from_pixels"]
+    acceleration_noise_m_s2: NonNegative = Field(description="1 sigma per axis, over each step")
+    pixel_variance_px2: Positive = Field(1.0, description="of each coordinate")
+    updates_in_control: bool = Field(False, description="use what is seen while cameras turn")
+    attitude_bias: bool = Field(False, description="estimate the errors of the known attitudes")
+    tracks: Literal["debris", "all"] = Field("debris", description="all: companions as well")
+    detections: Literal["all", "own"] = Field("all", description="own: only the debris', labelled")
+
+    @model_validator(mode="after")
+    def _one_at_a_time(self) -> "OrbitFromPixels":
+        if self.tracks == "all" and self.attitude_bias:
+            raise ValueError("attitude_bias: true is not possible with tracks: all")
+        return self
+
+    def measurements(self, data: Data) -> Array:
+        """Return the points (run, time, observer, detection, 2)."""
+        points = data["detected_pixel"]
+        if self.detections == "own":
+            points = labelled(points, data["target_detection"].astype(np.int64))
+        if self.updates_in_control:
+            return points
+        turning = data["section"] % 2 == 1
+        return np.where(turning[..., None, None, None], np.nan, points)
+
+    def model(self, data: Data, clock: Clock) -> ScanModel:
+        """Return process and measurement of one clock step."""
+        to_camera = quaternion.to_matrix(quaternion.conjugate(data["known_q_ic"]))
+        return scan_model(
+            Setup(
+                step=clock.step,
+                observer=_time_first(data["observer_position"]),
+                to_camera=_time_first(to_camera),
+                scale=data["camera_scale"],
+                acceleration_noise=self.acceleration_noise_m_s2,
+                pixel_variance=self.pixel_variance_px2,
+                with_bias=self.attitude_bias,
+            )
+        )
+
+    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+        """Return state (run, n) and covariance (run, n, n); with tracks (run, track, ...)."""
+        state = np.concatenate([guess["orbit_position"], guess["orbit_velocity"]], axis=-1)
+        covariance = _orbit_covariance(variance, "orbit", len(state))
+        if self.tracks == "all":
+            return _with_companions(state, covariance, guess, variance)
+        if not self.attitude_bias:
+            return state, covariance
+        bias = guess["attitude_bias"].reshape(len(state), -1)
+        return _with_bias(state, covariance, bias, variance["attitude_bias"])
+
+    def unpack(self, filtered: Filtered) -> Data:
+        """Return the estimated quantities by name, each with its sigma."""
+        result: Data = {}
+        for values, end in ((filtered.state, ""), (filtered.sigma, "_sigma")):
+            result[f"debris_position{end}"] = values[..., :3]
+            result[f"debris_velocity{end}"] = values[..., 3:6]
+            if self.attitude_bias:
+                bias = values[..., 6:].reshape(*values.shape[:2], -1, 3)
+                result[f"attitude_bias{end}"] = bias
+        return result
+
+    def assess(self, data: Data, scored: Window) -> Data:
+        """Return errors of the orbit and consistency, as far as ``data`` holds a truth."""
+        return scores(data)
+
+    def truth(self, data: Data) -> Array | None:
+        """Return the true states (run, time, n), where they are known."""
+        if "orbit_position" not in data:
+            return None
+        parts = [data["orbit_position"], data["orbit_velocity"]]
+        if self.attitude_bias:
+            bias = true_bias(data)
+            parts.append(bias.reshape(*bias.shape[:2], -1))
+        return np.concatenate(parts, axis=-1)
+
+
+def _time_first(values: Array) -> Array:
+    return np.ascontiguousarray(np.moveaxis(values, 1, 0))
+
+
+def _orbit_covariance(variance: dict[str, float], name: str, runs: int) -> Array:
+    diagonal = np.repeat([variance[f"{name}_position"], variance[f"{name}_velocity"]], 3)
+    return np.tile(np.diag(diagonal), (runs, 1, 1))
+
+
+def _with_bias(
+    state: Array, covariance: Array, bias: Array, variance: float
+) -> tuple[Array, Array]:
+    n = state.shape[-1] + bias.shape[-1]
+    whole = np.tile(variance * np.eye(n), (len(state), 1, 1))
+    whole[:, ORBIT, ORBIT] = covariance
+    return np.concatenate([state, bias], axis=-1), whole
+
+
+def _with_companions(
+    state: Array, covariance: Array, guess: Data, variance: dict[str, float]
+) -> tuple[Array, Array]:
+    """The debris is track 0, companions follow, if there are any."""
+    tracks, spread = state[:, None], covariance[:, None]
+    if "companion_position" not in guess:
+        return tracks, spread
+    pieces = [guess["companion_position"], guess["companion_velocity"]]
+    others = np.concatenate(pieces, axis=-1)
+    other = _orbit_covariance(variance, "companion", len(state))[:, None]
+    count = others.shape[1]
+    return (
+        np.concatenate([tracks, others], axis=1),
+        np.concatenate([spread, np.repeat(other, count, axis=1)], axis=1),
+    )

@@ -1,0 +1,1 @@
+"""Pose, motion and inertia ratios of an unknown target from two cameras."""

@@ -1,0 +1,142 @@
+"""Two ways to hand a scenario's stereo cameras to a filter: additive errors, or a replay."""
+
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from debrisest.arrays import Array, Data
+from debrisest.clock import Clock
+from debrisest.filters.model import Model
+from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.problems.stereo_pose.additive import additive_model
+from debrisest.problems.stereo_pose.chart import ATTITUDE_ERROR
+from debrisest.problems.stereo_pose.data import (
+    NAMES,
+    Measure,
+    measured_of,
+    noise_of,
+    parts_of,
+    setup_of,
+    shown_of,
+    state_of,
+)
+from debrisest.problems.stereo_pose.model import RATE, VELOCITY, K, Q
+from debrisest.problems.stereo_pose.replay import replay_model
+from debrisest.problems.stereo_pose.score import scores
+from debrisest.roles import Filtered, Keys, NonNegative, ProblemPart, Window
+
+
+class _StereoPose(ProblemPart):
+    """What both forms share: the measurements, and how estimates are scored."""
+
+    needs: ClassVar[tuple[str, ...]] = (
+        "baseline",
+        "orbit_position",
+        "orbit_velocity",
+        "start_point_b",
+    )
+    measures: list[Measure] | None = None
+    score_delay_s: NonNegative = 0.0
+
+    def measurements(self, data: Data) -> Array:
+        """Return the chosen measurements (run, time, m)."""
+        return measured_of(data, shown_of(data, self.measures))
+
+    def assess(self, data: Data, scored: Window) -> Data:
+        """Return errors against the truth, or the truth a delay later, and consistency."""
+        step = data["time_s"][1] - data["time_s"][0]
+        return scores(data, round(self.score_delay_s / step))
+
+    def truth(self, data: Data) -> Array | None:
+        """Return the true states (run, time, n), where they are known."""
+        return state_of(data, "true_") if "true_q_lt" in data else None
+
+
+class ProcessNoise(Keys):
+    """What a filter adds per step, 1 sigma per axis."""
+
+    velocity_m_s: NonNegative = 0.0
+    rate_rad_s: NonNegative = 0.0
+
+
+class StereoPoseAdditive(_StereoPose):
+    """All components of the state as errors, the quaternion's among them."""
+
+    gives: ClassVar[tuple[str, ...]] = ("model",)
+    kind: Literal["stereo_pose_additive"]
+    process_noise: ProcessNoise = ProcessNoise()
+    transition: Literal["exact", "first_order"] = "exact"
+    raw_rotation: bool = False
+
+    def model(self, data: Data, clock: Clock) -> Model:
+        """Return process and measurement of one clock step."""
+        known = setup_of(data, clock, self.measures, self.raw_rotation)
+        variance = np.zeros(15 + 3 * known.points)
+        variance[VELOCITY] = self.process_noise.velocity_m_s**2
+        variance[RATE] = self.process_noise.rate_rad_s**2
+        noise = np.diag(noise_of(data, known) ** 2)
+        return additive_model(known, np.diag(variance), noise, self.transition == "exact")
+
+    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+        """Return the initial state (run, n) and covariance (run, n, n)."""
+        state = state_of(guess)
+        return state, _each(np.diag(_variances(variance, state)), len(state))
+
+    def unpack(self, filtered: Filtered) -> Data:
+        """Return the estimated quantities by name, each with its sigma."""
+        return _with_sigmas(filtered.state, filtered.sigma)
+
+
+class StereoPose(_StereoPose):
+    """The whole motion follows from its start: rotation vectors in place of quaternions."""
+
+    gives: ClassVar[tuple[str, ...]] = ("replay_model",)
+    needs = (*_StereoPose.needs, "start_position")
+    kind: Literal["stereo_pose"]
+
+    def model(self, data: Data, clock: Clock) -> ReplayModel:
+        """Return trajectories, measurements and charts."""
+        known = setup_of(data, clock, self.measures)
+        variance = {name: float(data[f"start_{name}_sigma"].flat[0]) ** 2 for name in NAMES}
+        prior = _plain(_variances(variance, state_of(data, "start_")))
+        return replay_model(known, noise_of(data, known), np.sqrt(prior))
+
+    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+        """Return the initial state (run, n) and the covariance (run, n_e, n_e) of its errors."""
+        state = state_of(guess)
+        return state, _each(np.diag(_plain(_variances(variance, state))), len(state))
+
+    def unpack(self, filtered: Filtered) -> Data:
+        """Return the estimated quantities by name, each with its sigma.
+
+        A quaternion component's follows from the angles' as if these were uncorrelated.
+        """
+        q, turn = filtered.state[..., Q], filtered.sigma[..., ATTITUDE_ERROR]
+        w, x, y, z = np.moveaxis(q, -1, 0)
+        by_turn = np.stack([np.stack(r, -1) for r in ((x, y, z), (w, z, y), (z, w, x), (y, x, w))])
+        spread = 0.5 * np.sqrt((np.moveaxis(by_turn, 0, -2) ** 2 @ turn[..., None] ** 2)[..., 0])
+        parts = [filtered.sigma[..., : Q.start], spread, filtered.sigma[..., Q.start + 3 :]]
+        return _with_sigmas(filtered.state, np.concatenate(parts, axis=-1))
+
+
+def _variances(variance: dict[str, float], state: Array) -> Array:
+    """Return the variance of every component of the state (n,)."""
+    result = np.empty(state.shape[-1])
+    for name, where in NAMES.items():
+        result[where] = variance[name]
+    return result
+
+
+def _plain(variance: Array) -> Array:
+    """Variances of plain errors: an angle is twice a component of the quaternion."""
+    angle = 4 * variance[Q.start : Q.start + 3]
+    return np.concatenate([variance[: Q.start], angle, variance[K.start :]])
+
+
+def _each(covariance: Array, runs: int) -> Array:
+    return np.tile(covariance, (runs, 1, 1))
+
+
+def _with_sigmas(state: Array, sigma: Array) -> Data:
+    sigmas = {f"{name}_sigma": part for name, part in parts_of(sigma).items()}
+    return parts_of(state) | sigmas

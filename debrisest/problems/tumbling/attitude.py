@@ -1,0 +1,165 @@
+"""Rate and inertia of a torque-free body from the attitude of a frame fixed in it.
+
+The state (14) is ``q_ib`` (principal axes to inertial), ``q_bf`` (feature frame to principal
+axes, constant), the rate in principal axes and the principal moments, scaled to unit norm. What is
+measured is ``q_if = q_ib q_bf``, up to its sign. The source is Biondi et al. (2017), Eqs 29-31.
+
+We depart from the printed Eq 29 in the sign of Euler's term (``-J^-1 (w x J w)``; with the printed
+sign the filter finds the same rates and a wrong inertia) and in the size of its zero block for
+``q_bf`` (4, not 3). The body's axes ``b`` of a filter are principal axes known only up to a
+relabeling, see `debrisest.assessment.principal_axes`.
+"""
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+
+from debrisest.arrays import Array, Data
+from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.filters.model import Model
+from debrisest.problems.tumbling.score import scores
+from debrisest.roles import Filtered, Keys, Positive, ProblemPart, Window
+
+Q_IB, Q_BF, RATE, MOMENTS = slice(0, 4), slice(4, 8), slice(8, 11), slice(11, 14)
+ERROR_NAMES = tuple(
+    f"{name}_{index}"
+    for name, indices in (("q_ib", "0123"), ("q_bf", "0123"), ("rate", "123"), ("moment", "123"))
+    for index in indices
+)
+LEAST_MOMENT = 0.02
+"""Sigma points of the moments, which have unit norm, are kept this far from zero."""
+
+
+def derivative(q: Array, rate: Array, ratio: Array) -> tuple[Array, Array]:
+    """Return the time derivatives of ``q_ib`` (4, ...) and of the rate (3, ...), per second.
+
+    Components come first. ``ratio`` (3, ...) is ``(J2 - J3) / J1`` and its cyclic companions, all
+    that the motion shows of the moments (Eqs 29 and 31, corrected).
+    """
+    q0, q1, q2, q3 = q
+    w1, w2, w3 = rate
+    q_dot, acceleration = np.empty_like(q), np.empty_like(rate)
+    q_dot[0] = -(q1 * w1 + q2 * w2 + q3 * w3)
+    q_dot[1] = q0 * w1 + q2 * w3 - q3 * w2
+    q_dot[2] = q0 * w2 + q3 * w1 - q1 * w3
+    q_dot[3] = q0 * w3 + q1 * w2 - q2 * w1
+    acceleration[0], acceleration[1], acceleration[2] = w2 * w3, w3 * w1, w1 * w2
+    q_dot *= 0.5
+    acceleration *= ratio
+    return q_dot, acceleration
+
+
+def euler_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array, Array]:
+    """Return ``q`` and rate after one explicit Euler step of ``step`` seconds, as printed."""
+    q_dot, acceleration = derivative(q, rate, ratio)
+    return q + step * q_dot, rate + step * acceleration
+
+
+def rk4_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array, Array]:
+    """Return ``q`` and rate after one classical Runge-Kutta step of ``step`` seconds."""
+    half = 0.5 * step
+    q1, w1 = derivative(q, rate, ratio)
+    q2, w2 = derivative(q + half * q1, rate + half * w1, ratio)
+    q3, w3 = derivative(q + half * q2, rate + half * w2, ratio)
+    q4, w4 = derivative(q + step * q3, rate + step * w3, ratio)
+    sixth = step / 6
+    return q + sixth * (q1 + 2 * (q2 + q3) + q4), rate + sixth * (w1 + 2 * (w2 + w3) + w4)
+
+
+Integrator = Callable[[Array, Array, Array, float], tuple[Array, Array]]
+
+
+def process(state: Array, step: float, integrator: Integrator) -> Array:
+    """Return the states (..., 14) after ``step`` seconds; offset and moments do not change."""
+    following = np.array(np.moveaxis(state, -1, 0), order="C")
+    moments = following[MOMENTS]
+    j1, j2, j3 = np.copysign(np.maximum(np.abs(moments), LEAST_MOMENT), moments)
+    ratio = np.stack([(j2 - j3) / j1, (j3 - j1) / j2, (j1 - j2) / j3])
+    following[Q_IB], following[RATE] = integrator(following[Q_IB], following[RATE], ratio, step)
+    return np.moveaxis(following, 0, -1)
+
+
+def measured_attitude(state: Array) -> Array:
+    """Return ``q_if`` (..., 4) of states (..., 14), as in Eq 30."""
+    return quaternion.multiply(state[..., Q_IB], state[..., Q_BF])
+
+
+def correct(state: Array, error: Array) -> Array:
+    """Add an error (..., 14), then scale both quaternions and the moments to unit norm."""
+    corrected = state + error
+    for block in (Q_IB, Q_BF, MOMENTS):
+        corrected[..., block] /= np.linalg.norm(corrected[..., block], axis=-1, keepdims=True)
+    return corrected
+
+
+def sign_free_innovation(measured: Array, predicted: Array) -> Array:
+    """Return ``+-measured - predicted``, whichever sign lies nearer: both are one attitude."""
+    product = np.sum(measured * predicted, axis=-1, keepdims=True)
+    return np.where(product < 0, -measured, measured) - predicted
+
+
+_INTEGRATORS: dict[str, Integrator] = {"euler": euler_step, "rk4": rk4_step}
+
+
+class Variances(Keys):
+    """A variance for each block of the state."""
+
+    q_ib: Positive
+    q_bf: Positive
+    rate_rad2_s2: Positive
+    moments: Positive
+
+    def diagonal(self) -> Array:
+        """Return the covariance (14, 14)."""
+        blocks = (self.q_ib, self.q_bf, self.rate_rad2_s2, self.moments)
+        return np.diag(np.repeat(blocks, (4, 4, 3, 3)))
+
+
+class TumblingAttitude(ProblemPart):
+    """The problem of this file, with its integrator and its noises (variances)."""
+
+    version = 2
+    needs = ("q_if",)
+    gives = ("model",)
+    kind: Literal["tumbling_attitude"]
+    integrator: Literal["euler", "rk4"]
+    process_noise: Variances
+    measurement_noise: Positive
+
+    def measurements(self, data: Data) -> Array:
+        """Return the recovered attitude (run, time, 4)."""
+        return data["q_if"]
+
+    def model(self, data: Data, clock: Clock) -> Model:
+        """Return process and measurement of one clock step."""
+        integrator = _INTEGRATORS[self.integrator]
+        return Model(
+            process=lambda state, _: process(state, clock.step, integrator),
+            measurement=lambda state, _: measured_attitude(state),
+            process_noise=self.process_noise.diagonal(),
+            measurement_noise=self.measurement_noise * np.eye(4),
+            error_names=ERROR_NAMES,
+            retract=correct,
+            innovation=sign_free_innovation,
+        )
+
+    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+        """Return the initial state (run, 14) and covariance (run, 14, 14)."""
+        state = np.concatenate(
+            [guess["q_ib"], guess["q_bf"], guess["rate_b"], guess["moments_b"]], axis=-1
+        )
+        covariance = Variances(**variance).diagonal()
+        return state, np.broadcast_to(covariance, (len(state), *covariance.shape)).copy()
+
+    def unpack(self, filtered: Filtered) -> Data:
+        """Return the estimated quantities by name, each with its sigma."""
+        blocks = {"q_ib": Q_IB, "q_bf": Q_BF, "rate_b": RATE, "moments_b": MOMENTS}
+        return {name: filtered.state[..., block] for name, block in blocks.items()} | {
+            f"{name}_sigma": filtered.sigma[..., block] for name, block in blocks.items()
+        }
+
+    def assess(self, data: Data, scored: Window) -> Data:
+        """Return errors of attitude, rate and inertia in true principal axes, if known."""
+        return scores(data, scored, data["covariance"][..., RATE, RATE])

@@ -1,0 +1,69 @@
+"""Tracked points of a torque-free body as a `ReplayModel`, which the replay filter wants."""
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.attitude import quaternion
+from debrisest.dynamics.relative_rotation import matrix_of_cross
+from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.problems.tumbling import points_motion as body
+from debrisest.problems.tumbling.points_contrasts import contrasts
+
+
+def replay_model(known_point_f: Array, seen: BoolArray, noise: float, step: float) -> ReplayModel:
+    """Return the problem of ``seen (run, time, feature)`` points.
+
+    ``known_point_f (run, feature, 3)``, m, in the feature frame; ``noise`` of a coordinate, m;
+    ``step`` of an epoch, s. What a run shows of its points depends on which it sees: states carry
+    the number of their run.
+    """
+    arms = contrasts(known_point_f[:, None], seen)
+    rows_of_epoch = 3 * arms.shape[-2]
+
+    def trajectory(state: Array, first: int, last: int) -> tuple[Array, Array]:
+        count = abs(last - first) + 1
+        return body.trajectory(state, np.linspace(0.0, (last - first) * step, count))
+
+    return ReplayModel(
+        trajectory=trajectory,
+        rows=lambda states, turning, _, epochs: rows(arms, states, turning, epochs),
+        transition=lambda turning, _, __: transition(turning),
+        rewind=lambda state, epoch: body.moved(state, -epoch * step),
+        chart=_identity,
+        inverse_chart=_identity,
+        retract=body.retract,
+        difference=body.difference,
+        plain_difference=body.difference,
+        start=lambda prior, _, __: prior,
+        sigma=np.full(rows_of_epoch, noise),
+        error_names=body.ERROR_NAMES,
+        displace=body.displace,
+    )
+
+
+def rows(arms: Array, states: Array, turning: Array, epochs: IntArray) -> tuple[Array, Array]:
+    """Contrasts ``(run, epoch, m)`` of the points and their derivative ``(run, epoch, m, 11)``.
+
+    ``arms (run, time, feature - 1, 3)`` are the contrasts in the feature frame, of all runs;
+    ``states (run, epoch, 13)`` those of ``epochs``, and ``turning (run, epoch, 6, 8)`` theirs.
+    """
+    runs = states[:, :1, body.RUN.start].astype(np.int64)
+    turn = quaternion.to_matrix(states[..., body.Q])
+    shown = arms[runs, epochs] @ np.swapaxes(turn, -1, -2)
+    by_turn = -matrix_of_cross(shown)
+    by_rest = by_turn @ turning[:, :, None, :3]
+    derivative = np.concatenate([by_turn, by_rest], axis=-1)
+    flat = shown.reshape(*shown.shape[:2], 3 * shown.shape[-2])
+    return flat, derivative.reshape(*flat.shape, len(body.ERROR_NAMES))
+
+
+def transition(turning: Array) -> Array:
+    """Derivative ``(run, 11, 11)`` of errors by those of the epoch where ``turning`` starts."""
+    result = np.zeros((len(turning), 11, 11))
+    result[:] = np.eye(11)
+    result[:, : body.RATE_ERROR.stop, body.RATE_ERROR.start :] = turning
+    return result
+
+
+def _identity(state: Array) -> Array:
+    return np.broadcast_to(np.eye(11), (*state.shape[:-1], 11, 11))
