@@ -142,6 +142,9 @@ def _not_simulated(path: KeyPath, table: Table, cases: Mapping[str, Scenario]) -
 def _unknown_cases(scenario: Scenario, cases: list[str]) -> Found:
     tables = scenario.tables
     for name, estimator in scenario.estimators.items():
+        if "bound" in estimator.model_fields_set and estimator.bound not in scenario.estimators:
+            known = allowed_names(estimator.bound, scenario.estimators)
+            yield ("estimators", name, "bound"), f"no estimator {estimator.bound!r}; {known}"
         for case in estimator.cases or []:
             if case not in cases:
                 yield ("estimators", name, "cases"), _unknown(case, cases)

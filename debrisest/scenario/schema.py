@@ -122,6 +122,7 @@ class Estimator(Keys):
     start: StartPart | None = None
     filter: FilterPart | None = None
     cases: list[str] | None = Field(None, description="where it is used; default: everywhere")
+    bound: str = Field("bound", description="estimator that stands in the column bound of tables")
 
     @model_validator(mode="after")
     def _complete(self) -> "Estimator":

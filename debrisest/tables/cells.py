@@ -25,10 +25,6 @@ COLUMNS = [
     *("runs", "failed", "diverged", "verdict", "consistent_low", "consistent_high"),
 ]
 
-BOUND = "bound"
-_BOUNDS = dict.fromkeys(("smoother", "smoother_bound"), "smoother_bound")
-"""Estimators whose bound is another one than that of all the others."""
-
 Results = Mapping[tuple[str, str], Result]
 
 
@@ -100,7 +96,8 @@ def _row(
         return None
     bound = None
     if estimator != SIMULATED:
-        bound = _measured(key, _BOUNDS.get(estimator, BOUND), table, scenario, results)
+        name = scenario.common.estimators[estimator].bound
+        bound = _measured(key, name, table, scenario, results)
     return {
         **key._asdict(),
         "estimator": estimator,

@@ -125,7 +125,7 @@ def _rich_table(sheet: Sheet) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for head in sheet.heads:
         side: Literal["left", "right"] = "left" if head in ("case", "source") else "right"
-        whole = head == "source"
+        whole = head in ("case", "source")
         table.add_column(escape(head), justify=side, overflow="fold", no_wrap=whole)
     previous = ""
     for row in sheet.rows:
