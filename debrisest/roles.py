@@ -1,7 +1,7 @@
 """What a scenario can name: the base of every part, and what each role must be able to do."""
 
 from abc import ABC, abstractmethod
-from typing import Annotated, Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,17 @@ def _unit_quaternion(q: list[float]) -> list[float]:
 UnitQuaternion = Annotated[
     list[float], Field(min_length=4, max_length=4), AfterValidator(_unit_quaternion)
 ]
+
+
+def _ascending(limits: list[float]) -> list[float]:
+    if limits[0] > limits[1]:
+        raise ValueError("the lower limit comes first")
+    return limits
+
+
+_Number = TypeVar("_Number")
+Limits = Annotated[list[_Number], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
+"""Lower and upper limit, such as ``Limits[Positive]``."""
 
 
 class Keys(BaseModel):

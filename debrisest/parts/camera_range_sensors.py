@@ -13,12 +13,17 @@ from debrisest.dynamics.pointing import camera_axes
 from debrisest.roles import NonNegative, Positive, SimulationPart
 from debrisest.sensors import pinhole
 from debrisest.target.start_frame import attitude_in_hill
-from debrisest.target.surface import box_faces, depth_along, hidden_by_box, hull_faces
+from debrisest.target.surface import (
+    FEWEST_POINTS,
+    box_faces,
+    depth_along,
+    hidden_by_box,
+    hull_faces,
+)
 from debrisest.target.visibility import back_face_visible
 
 Share = Annotated[float, Field(ge=0, le=1)]
 HalfSides = Annotated[list[Positive], Field(min_length=3, max_length=3)]
-FEWEST_POINTS = 4
 
 
 class CameraRange(SimulationPart):
@@ -38,6 +43,7 @@ class CameraRange(SimulationPart):
         *("focal_px", "image_noise_px", "range_noise", "attitude_noise"),
     )
     tried = True
+    version = 2
     kind: Literal["camera_range"]
     focal_px: Positive = 1000.0
     pixel_noise_px: Positive = 1.0
@@ -69,11 +75,12 @@ class CameraRange(SimulationPart):
         noise = draws.normal(Stream.MEASUREMENT_NOISE, (*points_c.shape[1:-1], 2))
         pixels = pinhole.project(points_c, self.focal_px) + self.pixel_noise_px * noise
         pixels = self._with_false_matches(pixels, draws)
-        pixels[~self._seen(data, pixels.shape[1:-1], draws)] = np.nan
+        seen = self._seen(data, pixels.shape[1:-1], draws)
+        pixels[~seen] = np.nan
         runs = len(draws.runs)
         return {
             "image_point": np.round(pixels) if self.whole_pixels else pixels,
-            **self._ranges(data, q_hc, points_c, draws),
+            **self._ranges(data, points_c, seen, draws),
             **self._attitude(q_hc, draws),
             "focal_px": np.full(runs, self.focal_px),
             "image_noise_px": np.full(runs, self._image_noise()),
@@ -115,9 +122,10 @@ class CameraRange(SimulationPart):
         normals = data["true_normal_b"][:, None]
         return np.asarray(found & back_face_visible(points, normals, q_hb, observer_h))
 
-    def _ranges(self, data: Data, q_hc: Array, points_c: Array, draws: Draws) -> Data:
+    def _ranges(self, data: Data, points_c: Array, seen: BoolArray, draws: Draws) -> Data:
         distance = np.linalg.norm(data["chaser_position_h"], axis=-1)
-        landmark = front_landmark(points_c, distance)
+        landmark = front_landmark(points_c, distance, seen)
+        held: BoolArray = np.asarray(seen.any(-1))
         to_points = np.linalg.norm(points_c, axis=-1)
         to_landmark = np.take_along_axis(to_points, landmark[..., None], axis=-1)[..., 0]
         if self.range_to == "surface":
@@ -127,8 +135,8 @@ class CameraRange(SimulationPart):
         noise = self.range_noise_m * draws.normal(Stream.MEASUREMENT_NOISE, (distance.shape[1], 2))
         return {
             "measured_range": distance + noise[..., 0],
-            "landmark": landmark.astype(np.float64),
-            "landmark_range": to_landmark + noise[..., 1],
+            "landmark": np.where(held, landmark, np.nan),
+            "landmark_range": np.where(held, to_landmark + noise[..., 1], np.nan),
         }
 
     def _surface(self, data: Data, distance: Array) -> Array:
@@ -156,13 +164,13 @@ def points_in_camera(data: Data, q_hc: Array) -> Array:
     return quaternion.rotate(quaternion.conjugate(q_hc)[..., None, :], sight)
 
 
-def front_landmark(points_c: Array, distance: Array) -> IntArray:
-    """Return which point (run, time) a range finder is held on: of those in front of the centre
-    of mass, the one nearest the optical axis.
+def front_landmark(points_c: Array, distance: Array, seen: BoolArray) -> IntArray:
+    """Return which point (run, time) a range finder is held on: of those seen, and if possible in
+    front of the centre of mass, the one nearest the optical axis; any where none is seen.
     """
     off_axis = np.hypot(points_c[..., 0], points_c[..., 1]) / points_c[..., 2]
     behind = points_c[..., 2] > distance[..., None]
-    return np.asarray(np.argmin(off_axis + behind * 1e3, axis=-1))
+    return np.asarray(np.argmin(off_axis + behind * 1e3 + ~seen * 1e6, axis=-1))
 
 
 def _require_in_front(points_c: Array, times: Array) -> None:

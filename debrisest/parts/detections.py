@@ -9,7 +9,7 @@ from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
-from debrisest.dynamics import kepler
+from debrisest.dynamics import kepler, perturbed_orbit
 from debrisest.parts.tracking_sensors import drawn_about
 from debrisest.roles import Keys, NonNegative, Positive, SimulationPart
 from debrisest.sensors import pinhole
@@ -27,6 +27,8 @@ class Clutter(Keys):
 
 MOST_COMPANIONS = 7
 """With the debris as many tracks as can be associated jointly."""
+_EXACT = 1e-3
+"""Part of what J2 does in one step that may be numerical error."""
 
 
 class Companions(Keys):
@@ -35,6 +37,7 @@ class Companions(Keys):
     count: Count
     spread_km: Positive = Field(description="1 sigma per axis of the distance from the debris")
     relative_speed_m_s: NonNegative = Field(10.0, description="1 sigma per axis")
+    j2: bool = Field(False, description="the Earth's oblateness, as in the debris' orbit")
     position_sigma_m: Positive = Field(1e4, description="of the first guess")
     velocity_sigma_m_s: Positive = Field(100.0, description="of the first guess")
 
@@ -68,9 +71,10 @@ class Detections(SimulationPart):
         """Return the points (run, time, observer, detection, 2) and which is the debris' own."""
         shown, result = data["true_pixel"][..., None, :], Data()
         if self.companions is not None:
+            _require_same_gravity(self.companions, data, clock.times[:2])
             position, velocity = self._companions(self.companions, data, draws)
             result = self._guess(self.companions, position, velocity, draws)
-            others = _shown(data, kepler.propagate(position, velocity, clock.times)[0])
+            others = _shown(data, _flown(self.companions.j2, position, velocity, clock.times))
             shown = np.concatenate([shown, others], axis=-2)
         noise = draws.normal(Stream.MEASUREMENT_NOISE, shown.shape[1:])
         found = draws.uniform(Stream.MEASUREMENT_NOISE, shown.shape[1:-1])
@@ -103,6 +107,25 @@ class Detections(SimulationPart):
         return drawn_about(
             "start_companion_position", position, pieces.position_sigma_m, draws
         ) | drawn_about("start_companion_velocity", velocity, pieces.velocity_sigma_m_s, draws)
+
+
+def _flown(j2: bool, position: Array, velocity: Array, times: Array) -> Array:
+    """Positions (..., time, 3) of what flies freely."""
+    if j2:
+        return perturbed_orbit.propagate(position, velocity, times, perturbed_orbit.J2_EARTH)[0]
+    return kepler.propagate(position, velocity, times)[0]
+
+
+def _require_same_gravity(pieces: Companions, data: Data, times: Array) -> None:
+    """Raise ValueError where the debris moves exactly as the other value of `j2` has it."""
+    start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+    own, other = (_flown(j2, *start, times)[1] for j2 in (pieces.j2, not pieces.j2))
+    gap = np.linalg.norm(other - own)
+    if np.linalg.norm(data["orbit_position"][0, 1] - other) < _EXACT * gap:
+        raise ValueError(
+            "the Earth's oblateness acts on the debris and its companions alike; set "
+            f"companions.j2 to {str(not pieces.j2).lower()}, as it is in the orbit"
+        )
 
 
 def _shown(data: Data, position: Array) -> Array:

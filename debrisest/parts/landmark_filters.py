@@ -1,7 +1,8 @@
 """Estimators of a motion and of landmarks: with a batch first, without, and their bound."""
 
 from collections.abc import Iterable
-from typing import Annotated, Literal
+from itertools import pairwise
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,8 @@ from debrisest.roles import Filtered, FilterPart, Given, NonNegative, Positive
 
 GATE = 1e-3
 """False alarms of the gate: 13.8 for a point's two pixels."""
+_FEWEST_FRAMES = 5
+_EXTENDED_S = (900.0, 1200.0)
 _SUSPICIOUS = 1.25
 """NIS per component in the second half beyond which a run does not fit its model."""
 _SUSPECT = (
@@ -31,6 +34,7 @@ _SUSPECT = (
 
 
 class _LandmarkFilter(FilterPart):
+    version = 2
     needs = ("landmark_model",)
     iterations: Annotated[int, Field(ge=1)] = 3
     gate: bool = True
@@ -46,12 +50,21 @@ class LandmarkBatch(_LandmarkFilter):
     kind: Literal["landmark_batch"]
     windows_s: list[Positive] = [50.0, 100.0, 200.0, 350.0, 600.0]
     spacing_s: list[Positive] = [5.0, 5.0, 5.0, 10.0, 5.0]
-    extended_s: list[Positive] = [900.0, 1200.0]
+    extended_s: list[Positive] = list(_EXTENDED_S)
     extended_spacing_s: Positive = 10.0
     batch_iterations: Annotated[int, Field(ge=1)] = 15
     restarts: Annotated[int, Field(ge=0)] = 4
     mirrored: bool = True
     false_matches: bool = False
+
+    @model_validator(mode="before")
+    @classmethod
+    def _usual_extension(cls, keys: Any) -> Any:
+        """Of the usual extended windows, those that are longer than the windows."""
+        if isinstance(keys, dict) and keys.get("windows_s") and "extended_s" not in keys:
+            last = keys["windows_s"][-1]
+            return keys | {"extended_s": [end for end in _EXTENDED_S if end > last]}
+        return keys
 
     @model_validator(mode="after")
     def _windows(self) -> "LandmarkBatch":
@@ -59,7 +72,21 @@ class LandmarkBatch(_LandmarkFilter):
             raise ValueError("windows_s and spacing_s need as many entries, at least one")
         if sorted(self.windows_s) != self.windows_s:
             raise ValueError("windows_s must grow")
+        ends = [self.windows_s[-1], *self.extended_s]
+        if any(after <= before for before, after in pairwise(ends)):
+            raise ValueError("extended_s must ascend, and exceed the last of windows_s")
+        for end, spacing in [*zip(self.windows_s, self.spacing_s), *self._extensions()]:
+            if spacing > end:
+                raise ValueError(f"a spacing of {spacing:g} s exceeds its window of {end:g} s")
+            if end // spacing + 1 < _FEWEST_FRAMES:
+                raise ValueError(
+                    f"a window of {end:g} s with a spacing of {spacing:g} s has fewer than "
+                    f"{_FEWEST_FRAMES} frames"
+                )
         return self
+
+    def _extensions(self) -> list[tuple[float, float]]:
+        return [(end, self.extended_spacing_s) for end in self.extended_s]
 
     def run(self, model: LandmarkModel, given: Given) -> Filtered:
         """Return the estimates of all epochs; up to the batch's end they are the batch's own."""
@@ -85,10 +112,9 @@ class LandmarkBatch(_LandmarkFilter):
         return _filtered(found, _status(found, started), counts)
 
     def _batch(self, clock: Clock) -> Batch:
-        extended = [(end, self.extended_spacing_s) for end in self.extended_s]
         return Batch(
             windows=_windows(zip(self.windows_s, self.spacing_s), clock),
-            extended=_windows(extended, clock),
+            extended=_windows(self._extensions(), clock),
             iterations=self.batch_iterations,
             restarts=self.restarts,
             robust=self.false_matches,

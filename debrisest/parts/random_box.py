@@ -3,21 +3,12 @@
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
-from debrisest.roles import Positive, SimulationPart
-
-
-def _ascending(limits: list[float]) -> list[float]:
-    if limits[0] > limits[1]:
-        raise ValueError("the lower limit comes first")
-    return limits
-
-
-Limits = Annotated[list[Positive], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
+from debrisest.roles import Limits, Positive, SimulationPart
 
 
 class RandomBox(SimulationPart):
@@ -29,7 +20,7 @@ class RandomBox(SimulationPart):
     gives = ("true_point_b", "true_normal_b", "true_inertia_b")
     kind: Literal["random_box"]
     count: Annotated[int, Field(ge=3)]
-    half_side_m: Limits = Field(description="lower and upper limit")
+    half_side_m: Limits[Positive] = Field(description="lower and upper limit")
     mass_kg: Positive = 500.0
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:

@@ -1,9 +1,9 @@
 """A rotation that differs from run to run."""
 
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
 from debrisest.arrays import Data
 from debrisest.attitude import quaternion
@@ -11,16 +11,7 @@ from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
 from debrisest.dynamics.gravity_gradient import tumble
 from debrisest.dynamics.kepler import propagate
-from debrisest.roles import NonNegative, SimulationPart
-
-
-def _ascending(limits: list[float]) -> list[float]:
-    if limits[0] > limits[1]:
-        raise ValueError("the lower limit comes first")
-    return limits
-
-
-Limits = Annotated[list[NonNegative], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
+from debrisest.roles import Limits, NonNegative, SimulationPart
 
 
 class RandomTumble(SimulationPart):
@@ -29,7 +20,7 @@ class RandomTumble(SimulationPart):
     needs = ("true_inertia_b", "orbit_position", "orbit_velocity")
     gives = ("true_q_ib", "true_rate_b")
     kind: Literal["random_tumble"]
-    rate_deg_s: Limits = Field(description="lower and upper limit of the rate at time zero")
+    rate_deg_s: Limits[NonNegative] = Field(description="lower and upper limit, at time zero")
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude and rate of the body axes of each run."""

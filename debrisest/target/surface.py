@@ -6,6 +6,8 @@ from debrisest.arrays import Array, BoolArray
 
 _GRAZING = 1e-9
 """Part of a line of sight that may lie inside the target."""
+FEWEST_POINTS = 4
+"""Points that span a body: fewer have no shape that a camera could tell."""
 
 
 def box_faces(half_sides: Array) -> tuple[Array, Array]:
@@ -19,9 +21,12 @@ def hull_faces(points: Array) -> tuple[Array, Array]:
 
     The origin must lie inside, since it is where the lines start.
     """
-    from scipy.spatial import ConvexHull
+    from scipy.spatial import ConvexHull, QhullError
 
-    equations = ConvexHull(points).equations
+    try:
+        equations = ConvexHull(points).equations
+    except QhullError as error:
+        raise ValueError("the points lie in a plane; give half_sides_m") from error
     if not np.all(equations[:, 3] < 0.0):
         raise ValueError(
             "the centre of mass lies outside the hull of the points, so that a range to its "

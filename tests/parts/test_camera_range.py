@@ -123,6 +123,24 @@ def test_a_range_to_the_surface_is_nearer_and_to_a_landmark_that_landmarks() -> 
     assert (chosen < distance).all()
 
 
+def test_the_range_finder_is_held_on_a_point_that_the_camera_sees() -> None:
+    keys = {"visibility": "box", "half_sides_m": [1.0, 0.75, 0.5], "missed_share": 0.6}
+    data = _seen(keys | {"range_noise_m": 1e-9}, 6)
+    seen = np.isfinite(data["image_point"]).all(-1)
+    ranged = np.isfinite(data["landmark_range"])
+    assert 0.02 < 1 - ranged.mean() < 0.9
+    assert np.array_equal(ranged, seen.any(-1))
+    assert np.array_equal(ranged, np.isfinite(data["landmark"]))
+    run, time = np.nonzero(ranged)
+    point = data["landmark"][ranged].astype(int)
+    assert seen[run, time, point].all()
+    frame = hill_frame(data["orbit_position"], data["orbit_velocity"])
+    chaser = (frame @ data["chaser_position_h"][..., None])[..., 0]
+    placed = quaternion.rotate(data["true_q_ib"][..., None, :], data["true_point_b"][:, None])
+    away = np.linalg.norm(placed[run, time, point] - chaser[run, time], axis=-1)
+    assert np.allclose(data["landmark_range"][ranged], away, atol=1e-6)
+
+
 def test_the_guess_lies_on_the_measured_range_and_on_a_plane() -> None:
     data, draws = _scene(400)
     data |= _camera().simulate(data, CLOCK, draws)
@@ -193,6 +211,10 @@ def test_bad_input_is_refused_in_words() -> None:
         _camera(visibility="box")
     with pytest.raises(ValueError, match="lower limit comes first"):
         RandomTumble(kind="random_tumble", rate_deg_s=[0.14, 0.05])
+    with pytest.raises(ValueError, match="lower limit comes first"):
+        RandomBox(kind="random_box", count=4, half_side_m=[1.0, 0.5])
+    with pytest.raises(ValidationError, match="greater than 0"):
+        RandomBox(kind="random_box", count=4, half_side_m=[0.0, 0.5])
 
 
 def test_a_range_from_inside_the_target_is_refused() -> None:

@@ -17,7 +17,7 @@ from debrisest.parts.relative_ellipse import ClosedEllipse
 from debrisest.parts.shape_guess import Guessed, ShapeGuess
 from debrisest.parts.targets import RigidPoints
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
-from debrisest.roles import Given
+from debrisest.roles import Filtered, Given
 
 CLOCK = Clock(300.0, 5.0)
 WINDOWS = {"windows_s": [50, 100, 200, 900], "spacing_s": [5, 5, 5, 5], "extended_s": []}
@@ -124,6 +124,74 @@ def test_sigmas_are_named_like_the_estimates(data) -> None:
         assert found[name].shape == found[f"{name}_sigma"].shape
 
 
+def test_the_sigma_of_a_quaternion_is_that_of_attitudes_so_spread(data) -> None:
+    chosen, rng = problem(), np.random.default_rng(0)
+    state, covariance = chosen.pack(*FirstImage(kind="first_image").start(data, CLOCK))
+    q = quaternion.normalize(rng.standard_normal((3, 4)))
+    state[:, :4] = q
+    angles = np.array([0.01, 0.02, 0.03])
+    sigma = np.zeros(covariance.shape[:-1])
+    sigma[:, :3] = angles
+    nothing = Filtered(state[:, None], sigma[:, None], covariance, *[np.empty(0)] * 3, np.empty(0))
+    found = chosen.unpack(nothing)["q_hb_sigma"][:, 0]
+    turns = quaternion.exp(angles * rng.standard_normal((40_000, 1, 3)))
+    spread = (quaternion.multiply(q, turns) - q).std(axis=0)
+    np.testing.assert_allclose(found, spread, rtol=0.05, atol=3e-4)
+
+
+def test_constants_of_the_sensors_start_as_told_and_have_a_truth(data) -> None:
+    keys = {"range_to": "bias", "range_bias_m": 0.6, "range_bias_sigma_m": 0.2}
+    chosen = problem(**keys, camera_bias_sigma_deg=0.05)
+    state, covariance = chosen.pack(*FirstImage(kind="first_image").start(data, CLOCK))
+    np.testing.assert_array_equal(state[:, 18:22], [[0.6, 0.0, 0.0, 0.0]] * 3)
+    sigma = np.sqrt(np.diagonal(covariance, 0, -2, -1))
+    np.testing.assert_allclose(sigma[:, 17:21], [[0.2, *np.radians([0.05] * 3)]] * 3)
+    turn = np.array([1e-3, -2e-3, 3e-3])
+    known = quaternion.multiply(data["true_q_hc"], quaternion.exp(-turn))
+    distance = np.linalg.norm(data["chaser_position_h"], axis=-1)
+    ranges = distance - np.array([[0.3], [0.7], [0.9]])
+    ranges[1, ::2] = np.nan
+    truth = chosen.truth(data | {"known_q_hc": known, "measured_range": ranges})
+    np.testing.assert_allclose(truth[..., 18], np.repeat([[0.3], [0.7], [0.9]], 60, axis=1))
+    np.testing.assert_allclose(truth[..., 19:22] - turn, 0.0, atol=1e-12)
+
+
+def test_a_bias_of_an_attitude_that_is_implied_is_refused() -> None:
+    problem(camera_attitude="implied")
+    with pytest.raises(ValidationError, match="camera_bias_sigma_deg is that of a known attitude"):
+        problem(camera_attitude="implied", camera_bias_sigma_deg=0.02)
+
+
+def test_what_cannot_be_measured_is_refused_in_words(data) -> None:
+    zero = data["measured_range"].copy()
+    zero[1, 2] = 0.0
+    with pytest.raises(ValueError, match="range at 10 s is zero or negative"):
+        problem().measurements(data | {"measured_range": zero})
+    held = data | {"landmark_range": -data["landmark_range"]}
+    with pytest.raises(ValueError, match="range at 0 s is zero or negative"):
+        problem(range_to="landmark").measurements(held)
+    with pytest.raises(ValueError, match="at least 4 points, 3 were tracked"):
+        problem().measurements(data | {"image_point": data["image_point"][:, :, :3]})
+    with pytest.raises(ValueError, match="no image shows any point"):
+        problem().measurements(data | {"image_point": np.full_like(data["image_point"], np.nan)})
+
+
+def test_nothing_is_told_of_ratios_that_were_known_better_before(data) -> None:
+    chosen = problem(log_inertia_sigma=1e-4)
+    found = assessed(data, chosen, run(data, chosen, LandmarkBound(kind="landmark_bound")))
+    assert found["unobservable_ratios"].tolist() == [5.0] * 3
+
+
+def test_a_frame_without_a_ranged_point_has_no_range(data) -> None:
+    landmark, ranges = data["landmark"].copy(), data["landmark_range"].copy()
+    landmark[:, 5], ranges[:, 5] = np.nan, np.nan
+    chosen = problem(range_to="landmark")
+    found = chosen.measurements(data | {"landmark": landmark, "landmark_range": ranges})
+    count = np.isfinite(found.reshape(3, 60, -1, 3)[..., 2]).sum(-1)
+    assert (count[:, 5] == 0).all()
+    assert (np.delete(count, 5, axis=1) == 1).all()
+
+
 def test_a_run_that_does_not_fit_says_so(data) -> None:
     surface = data | {"measured_range": data["measured_range"] - 1.0}
     settings = {"windows_s": [50, 100, 150], "spacing_s": [5, 5, 5], "extended_s": []}
@@ -148,8 +216,28 @@ def test_the_bound_needs_a_truth(data) -> None:
         ({"windows_s": [50, 100]}, "as many entries"),
         ({"windows_s": [], "spacing_s": []}, "at least one"),
         ({"windows_s": [100, 50], "spacing_s": [5, 5]}, "must grow"),
+        ({"extended_s": [1200, 900]}, "must ascend"),
+        ({"extended_s": [600]}, "exceed the last of windows_s"),
+        ({"windows_s": [50], "spacing_s": [60]}, "spacing of 60 s exceeds its window of 50 s"),
+        ({"windows_s": [50], "spacing_s": [15]}, "fewer than 5 frames"),
+        ({"extended_spacing_s": 300}, "fewer than 5 frames"),
     ],
 )
 def test_windows_that_make_no_sense(keys: dict, words: str) -> None:
     with pytest.raises(ValidationError, match=words):
         LandmarkBatch(kind="landmark_batch", **keys)
+
+
+def test_the_usual_extension_is_longer_than_the_windows() -> None:
+    keys = {"windows_s": [50, 1000], "spacing_s": [5, 5]}
+    assert LandmarkBatch(kind="landmark_batch").extended_s == [900.0, 1200.0]
+    assert LandmarkBatch(kind="landmark_batch", **keys).extended_s == [1200.0]
+
+
+def test_a_run_with_too_few_landmarks_says_so(data) -> None:
+    hidden = data["image_point"].copy()
+    hidden[:, :, 3:] = np.nan
+    settings = {"windows_s": [50, 100, 150], "spacing_s": [5, 5, 5], "extended_s": []}
+    batch = LandmarkBatch(kind="landmark_batch", **settings)
+    status = run(data | {"image_point": hidden}, problem(), batch).status
+    assert all("too few landmarks" in words for words in status)

@@ -243,6 +243,32 @@ def test_companions_fly_beside_the_debris_for_good(scene) -> None:
     assert np.nanmax(steps) < 0.2  # no jump from frame to frame, unlike clutter
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+def test_companions_fall_as_the_debris_does(scene, noise: float) -> None:
+    """From the very place of the debris, at its velocity, they show its own pixels."""
+    data, near = scene(2), {"spread_km": 1e-9, "relative_speed_m_s": 0.0}
+    orbit = {"kind": "perturbed", **DEBRIS, "j2": True, "acceleration_noise_m_s2": noise}
+    data |= PerturbedOrbit(**orbit).simulate({}, CLOCK, draws(2))
+    away = data["orbit_position"][:, :, None] - data["observer_position"]
+    turn = Rotation.from_quat(data["true_q_ic"].reshape(-1, 4), scalar_first=True)
+    point = turn.inv().apply(away.reshape(-1, 3)).reshape(away.shape)
+    data["true_pixel"] = 335.0 * point[..., :2] / point[..., 2:]
+    keys = {"noise_px": 0.0, "rounding": False}
+    found = detected(data, 2, **keys, companions={"count": 1, "j2": True, **near})
+    apart = np.ptp(found["detected_pixel"], axis=-2)
+    assert np.max(apart[:, :2] if noise else apart) < 1e-6 + 1e-4 * (noise > 0)
+
+
+@pytest.mark.parametrize("j2", [False, True])
+def test_companions_under_another_gravity_are_refused(scene, j2: bool) -> None:
+    data = scene(1)
+    orbit = PerturbedOrbit(kind="perturbed", **DEBRIS, j2=j2).simulate({}, CLOCK, draws(1))
+    keys = {"count": 1, "spread_km": 1.0}
+    detected(data | orbit, 1, companions=keys | {"j2": j2})
+    with pytest.raises(ValueError, match=f"set companions.j2 to {str(j2).lower()}"):
+        detected(data | orbit, 1, companions=keys | {"j2": not j2})
+
+
 def test_the_points_of_a_run_do_not_depend_on_its_companions(scene) -> None:
     keys = {"clutter": {"count": 2, "half_width_px": 10.0}, "detection_probability": 0.9}
     many = detected(scene(5), 5, **keys)

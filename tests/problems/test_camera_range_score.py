@@ -151,5 +151,37 @@ def test_measurements_without_a_truth_are_not_scored_and_wrong_ones_are_refused(
     ranges[1, 3] = 0.0
     with pytest.raises(ValueError, match="range at 15 s is zero"):
         require_measurable(data | {"measured_range": ranges})
+    with pytest.raises(ValueError, match="range at 15 s is zero"):
+        require_measurable(data | {"landmark_range": ranges}, "landmark_range")
     with pytest.raises(ValueError, match="at least 4 points, 3 were tracked"):
         require_measurable({"image_point": np.zeros((1, 2, 3, 2))})
+    blind = data["image_point"].copy()
+    blind[1] = np.nan
+    with pytest.raises(ValueError, match="no image shows any point"):
+        require_measurable(data | {"image_point": blind, "measured_range": ranges})
+
+
+def test_directions_as_unknown_as_before_are_unobservable() -> None:
+    data, truth = _truth(6)
+    sigma = 0.1 * np.array([0.01, 0.3, 0.45, 0.6, 1.0])
+    data["covariance"] = data["covariance"].copy()
+    data["covariance"][:, :, range(9, 14), range(9, 14)] = sigma**2
+    estimate = _estimate(data, truth, np.eye(3))
+    found = scores(estimate, data["true_q_hc"][:, 0], ROWS, log_inertia_sigma=0.1)
+    assert found["unobservable_ratios"].tolist() == [2.0] * RUNS
+    assert np.allclose(found["ratio_deviation"], 0.045)
+
+
+@pytest.mark.parametrize("name", ["q_hb", "q_cb"])
+def test_the_angles_sigma_is_that_of_attitudes_so_spread(name: str) -> None:
+    data, truth = _truth(7)
+    estimate, rng = _estimate(data, truth, np.eye(3)), np.random.default_rng(0)
+    if name == "q_cb":
+        camera = quaternion.conjugate(data["true_q_hc"])
+        estimate["q_cb"] = quaternion.multiply(camera, estimate.pop("q_hb"))
+    turns = quaternion.exp(0.02 * rng.standard_normal((20_000, 1, 1, 3)))
+    drawn = quaternion.multiply(estimate[name], turns)
+    estimate[f"{name}_sigma"] = (drawn - estimate[name]).std(axis=0)
+    found = scores(estimate, data["true_q_hc"][:, 0], ROWS)["attitude_error_sigma"]
+    assert found.shape == (RUNS, EPOCHS, 3)
+    assert np.allclose(found, 0.02, rtol=0.03)

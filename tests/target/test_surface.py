@@ -36,6 +36,13 @@ def test_a_hull_beside_the_centre_of_mass_is_refused() -> None:
         hull_faces(np.array([[1.0, 0, 0], [2, 0, 0], [1, 1, 0], [1, 0, 1], [1, 1, 1]]))
 
 
+@pytest.mark.parametrize("count", [3, 4, 9])
+def test_points_in_a_plane_have_no_hull(count: int) -> None:
+    flat = np.random.default_rng(0).standard_normal((count, 3)) * [1.0, 1.0, 0.0]
+    with pytest.raises(ValueError, match="lie in a plane; give half_sides_m"):
+        hull_faces(flat)
+
+
 def test_hidden_points_by_marching() -> None:
     rng = np.random.default_rng(2)
     points = np.concatenate([2 * rng.uniform(-1, 1, (60, 3)), [[1.0, 0.75, 0.5], [0.6, 0.1, 0.5]]])

@@ -20,6 +20,7 @@ _TOLD_APART = 20.0
 _VAGUE = 0.03
 """Sigma of the points by their distance from the centre, above which the shape is not known."""
 _CONFIRMED_SHARE, _CONFIRMED_SIGHTS = 0.6, 5
+_FEWEST = 4
 
 
 class StartStatus(Outcome):
@@ -35,6 +36,11 @@ class StartStatus(Outcome):
         2,
         "start rejected: after all restarts the batch still fits its images worse than noise "
         "allows; a better first guess or fewer false matches are needed",
+    )
+    TOO_FEW = (
+        3,
+        f"too few landmarks: the batch confirms fewer than {_FEWEST}, which hardly tell the "
+        "motion; a longer batch, longer tracks or fewer false matches are needed",
     )
 
 
@@ -169,9 +175,13 @@ def _mirrored(task: _Problem, best: Fit, windows: Sequence[Window]) -> Fit:
 
 
 def _extend(task: _Problem, best: Fit, other: Fit, runs: IntArray, gap: Array) -> None:
-    """Go on with longer windows, from both mirrors where both are still there."""
-    batch = task.batch
-    for old, chosen in ((best, runs), (other, runs[np.isfinite(gap[runs])])):
+    """Go on with longer windows, from both mirrors where both are still there.
+
+    Where not, the other fit counts no longer: its cost is that of fewer frames.
+    """
+    batch, both = task.batch, np.isfinite(gap[runs])
+    other.found.value[runs[~both]] = np.inf
+    for old, chosen in ((best, runs), (other, runs[both])):
         if len(chosen):
             part, begin = task.of(chosen), old.of(chosen)
             found = fit(
@@ -205,7 +215,12 @@ def _same(one: Fit, other: Fit) -> BoolArray:
 
 
 def _redrawn(task: _Problem, parameters: Array, covariance: Array, attempt: int) -> Array:
-    """First guess with other errors, of the size of its covariance, the same for every run."""
+    """First guess with other errors, of the size of its covariance.
+
+    The draws are a fixed sequence, the same for every run: they belong to a deterministic
+    algorithm and are no part of the experiment's randomness, so that a run's estimate depends on
+    nothing but its measurements, neither on the seed nor on the runs beside it.
+    """
     n_x = parameters.shape[-1]
     drawn = np.random.default_rng(attempt).normal(size=n_x)
     sigma = np.sqrt(np.diagonal(covariance, 0, -2, -1)[:, :n_x])
@@ -219,8 +234,9 @@ def _handed_on(
     core, freedom = task.model.start(best.at.parameters)
     covariance = batch.inflation * scaled_inverse(best.found.information)
     status = np.where(gap < _TOLD_APART, StartStatus.AMBIGUOUS, StartStatus.FOUND)
-    status = np.where(best.ratio < batch.limit, status, StartStatus.REJECTED)
     present = _confirmed(best)
+    status = np.where(present.sum(-1) < _FEWEST, StartStatus.TOO_FEW, status)
+    status = np.where(best.ratio < batch.limit, status, StartStatus.REJECTED)
     n_c, n_x = freedom.shape[-2:]
     whole = np.zeros((len(core), n_c + covariance.shape[-1] - n_x, covariance.shape[-1]))
     whole[:, :n_c, :n_x] = freedom

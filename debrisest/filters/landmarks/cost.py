@@ -79,7 +79,7 @@ def cost(
     gradient = (prior.information @ offset[..., None])[..., 0]
     value = (offset * gradient).sum(-1) + _loss(squares, robust)
     terms = _landmark_terms(model, rows, weight, residual, by_start)
-    common = _common_terms(model, rows, seen, by_start)
+    common = _common_terms(model, rows, seen, by_start, robust)
     information = prior.information + terms[0]
     gradient += terms[1]
     n_x = at.parameters.shape[-1]
@@ -101,6 +101,7 @@ def _cauchy(squares: Array) -> Array:
 
 
 def _loss(squares: Array, robust: bool) -> Array:
+    """Sum over the epochs of squares (run, epoch, .), which Cauchy's loss lets grow slowly."""
     if robust:
         squares = CAUCHY_SCALE**2 * np.log1p(squares / CAUCHY_SCALE**2)
     return np.asarray(squares.sum((-2, -1)))
@@ -164,14 +165,17 @@ def _without_shared(
 
 
 def _common_terms(
-    model: LandmarkModel, rows: Rows, seen: Sights, by_start: Array
+    model: LandmarkModel, rows: Rows, seen: Sights, by_start: Array, robust: bool
 ) -> tuple[Array, Array, Array]:
-    weight = seen.common_seen / model.common_sigma
-    residual = np.where(seen.common_seen, weight * (seen.common - rows.common), 0.0)
-    flat = (rows.common_by_core * weight[..., None]) @ by_start
+    """Information, gradient and loss of the common rows, each weighed by itself."""
+    difference = (seen.common - rows.common) / model.common_sigma
+    squares = np.where(seen.common_seen, difference, 0.0) ** 2
+    weight = seen.common_seen * (_cauchy(squares) if robust else 1.0)
+    residual = np.where(seen.common_seen, weight * difference, 0.0)
+    flat = (rows.common_by_core * (weight / model.common_sigma)[..., None]) @ by_start
     flat = flat.reshape(len(flat), -1, by_start.shape[-1])
     gradient = _product(flat, residual.reshape(len(flat), -1, 1))[..., 0]
-    return _product(flat, flat), gradient, (residual**2).sum((-2, -1))
+    return _product(flat, flat), gradient, _loss(squares, robust)
 
 
 def _product(a: Array, b: Array) -> Array:

@@ -39,7 +39,6 @@ class Fit(NamedTuple):
     at: Unknowns
     prior: Prior
     found: Cost
-    converged: BoolArray
 
     @property
     def ratio(self) -> Array:
@@ -48,8 +47,7 @@ class Fit(NamedTuple):
 
     def of(self, runs: IntArray) -> "Fit":
         """Return the fits of some runs."""
-        parts = take(self.at, runs), take(self.prior, runs), take(self.found, runs)
-        return Fit(*parts, self.converged[runs])
+        return Fit(take(self.at, runs), take(self.prior, runs), take(self.found, runs))
 
     def put(self, runs: IntArray, other: "Fit") -> None:
         """Replace those of some runs, in place."""
@@ -57,7 +55,6 @@ class Fit(NamedTuple):
             (self.at, self.prior, self.found), (other.at, other.prior, other.found)
         ):
             put(mine, runs, new)
-        self.converged[runs] = other.converged
 
 
 def fresh(model: LandmarkModel, parameters: Array, prior: Prior) -> tuple[Unknowns, Prior]:
@@ -84,19 +81,19 @@ def fit(
     for window in windows:
         at, prior = place(model, sights, at, prior, window.last)
         most = iterations if window is not windows[-1] else _PATIENCE * iterations
-        found, converged = _descend(model, sights, at, prior, window.frames, most, robust)
-    return Fit(at, prior, found, converged)
+        found = _descend(model, sights, at, prior, window.frames, most, robust)
+    return Fit(at, prior, found)
 
 
 def place(
     model: LandmarkModel, sights: Sights, at: Unknowns, prior: Prior, last: int
 ) -> tuple[Unknowns, Prior]:
     """Give a place to the landmarks that were seen for the first time up to epoch ``last``."""
-    seen: BoolArray = np.asarray(sights.seen[:, : last + 1].any(-1))
+    seen = model.placeable(sights.seen[:, : last + 1])
     new = seen.any(1) & ~at.placed
     if not new.any():
         return at, prior
-    first = _typical_sighting(sights, seen)
+    first = _typical_sighting(sights.shown[..., : model.directions], seen)
     cores, _ = model.trajectory(model.start(at.parameters)[0], last)
     runs, landmarks = np.arange(len(first))[:, None], np.arange(first.shape[1])
     points, _, _ = model.place(cores[runs, first], sights.shown[runs, first, landmarks], first)
@@ -107,7 +104,7 @@ def place(
     return found, prior._replace(mean=mean)
 
 
-def _typical_sighting(sights: Sights, seen: BoolArray) -> IntArray:
+def _typical_sighting(directions: Array, seen: BoolArray) -> IntArray:
     """Epoch (run, N), of the first few sightings, of the one nearest to their median.
 
     So that a false match among them is not taken for the landmark.
@@ -115,7 +112,7 @@ def _typical_sighting(sights: Sights, seen: BoolArray) -> IntArray:
     order = np.where(seen, np.cumsum(seen, axis=1), seen.shape[1] + 1)
     epochs = np.argsort(order, axis=1, kind="stable")[:, :_FEW]
     known = np.take_along_axis(seen, epochs, axis=1)[..., None]
-    shown = np.take_along_axis(sights.shown, epochs[..., None], axis=1)
+    shown = np.take_along_axis(directions, epochs[..., None], axis=1)
     middle = np.nanmedian(np.where(known | ~known.any(1, keepdims=True), shown, np.nan), axis=1)
     distance = np.where(known, (shown - middle[:, None]) ** 2, np.inf).sum(-1)
     nearest = np.argmin(distance, axis=1)
@@ -130,9 +127,9 @@ def _descend(
     frames: IntArray,
     iterations: int,
     robust: bool,
-) -> tuple[Cost, BoolArray]:
+) -> Cost:
     """Lower the cost of every run, each with a damping of its own; ``at`` is changed in place."""
-    best = cost(model, sights, prior, at, frames, robust)
+    best = _usable(cost(model, sights, prior, at, frames, robust))
     damping = np.full(len(best.value), _FIRST_DAMPING)
     active = np.isfinite(best.value)
     for _ in range(iterations - 1):
@@ -143,15 +140,20 @@ def _descend(
         step, promise = _step(here, damping[runs])
         trial = take(at, runs).moved(step)
         part = model.of(runs), sights.at(runs), take(prior, runs)
-        new = cost(*part, trial, frames, robust)
+        new = _usable(cost(*part, trial, frames, robust))
         better = new.value <= here.value
         put(best, runs[better], take(new, np.flatnonzero(better)))
         put(at, runs[better], take(trial, np.flatnonzero(better)))
         damping[runs] = _next_damping(damping[runs], better)
         active[runs] = ~((promise < _DECREASE) | (damping[runs] >= _MOST_DAMPING))
-    converged = np.isfinite(best.value) & ~active
-    best.value[np.isnan(best.value)] = np.inf
-    return best, converged
+    return best
+
+
+def _usable(found: Cost) -> Cost:
+    """Cost that is infinite where it, or what a step needs, is not finite."""
+    sound = np.isfinite(found.value) & np.isfinite(found.gradient).all(-1)
+    found.value[~(sound & np.isfinite(found.information).all((-2, -1)))] = np.inf
+    return found
 
 
 def _step(at: Cost, damping: Array) -> tuple[Array, Array]:
@@ -161,6 +163,7 @@ def _step(at: Cost, damping: Array) -> tuple[Array, Array]:
     index = np.arange(size.shape[-1])
     damped[:, index, index] += damping[:, None] * size
     step = scaled_solve(damped, at.gradient)
+    step = np.where(np.isfinite(step).all(-1, keepdims=True), step, 0.0)
     promise = (at.gradient * step).sum(-1) + damping * (size * step**2).sum(-1)
     return step, promise
 

@@ -80,17 +80,15 @@ def _run(
     runs = np.arange(len(used_up))
     sound = finite(belief.core, belief.covariance)
     result.diverged_at[sound], result.status[sound] = -1, ReplayStatus.CONVERGED
-    for k in range(result.state.shape[1]):
+    epochs = result.state.shape[1]
+    for k in range(epochs):
         if not sound.all():
-            result.status[runs[~sound]] = np.where(
-                k > 0, ReplayStatus.DIVERGED, ReplayStatus.NO_START
-            )
-            result.diverged_at[runs[~sound]] = max(k - 1, 0)
+            _mark_lost(result, runs[~sound], k)
             alive = np.flatnonzero(sound)
             runs, model, sights = runs[alive], model.of(alive), sights.at(alive)
             belief, tracks, used_up = take(belief, alive), take(tracks, alive), used_up[alive]
             if len(runs) == 0:
-                break
+                return
         if k > 0:
             belief = predict(model, belief)
         belief, tracks, frame = _frame(
@@ -98,6 +96,15 @@ def _run(
         )
         sound = finite(belief.core, belief.covariance)
         _record(outcome, runs, k, belief, tracks, frame)
+    _mark_lost(result, runs[~sound], epochs)
+
+
+def _mark_lost(result: Estimates, lost: IntArray, k: int) -> None:
+    """Note runs that were not sound any more before epoch k."""
+    result.status[lost] = ReplayStatus.DIVERGED if k > 0 else ReplayStatus.NO_START
+    result.diverged_at[lost] = at = max(k - 1, 0)
+    result.state[lost, at] = result.sigma[lost, at] = np.nan
+    result.covariance[lost[:, None], np.flatnonzero(result.kept == at)] = np.nan
 
 
 def predict(model: LandmarkModel, belief: Belief) -> Belief:
@@ -128,7 +135,7 @@ def _frame(
     if not active.any():
         return belief, tracks, None
     belief, frame = update(model, belief, usable, k, rule, annealing.factor(k))
-    new = shown & ~tracks.present
+    new = model.placeable(seen) & ~tracks.present
     before = tracks.present
     tracks = judged(tracks, shown & before, frame.accepted)
     lost = before & ~tracks.present

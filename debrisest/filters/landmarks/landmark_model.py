@@ -91,11 +91,17 @@ class LandmarkModel(NamedTuple):
     """(core, reference) -> error with which `retract` takes the reference there."""
     of: Callable[[IntArray], "LandmarkModel"]
     """The model of some of the runs, any number of times each."""
+    directions: int = 2
+    """Leading components of a landmark, its pixels, without which `place` puts it nowhere."""
 
     @property
     def errors(self) -> int:
         """Number of the core's errors."""
         return len(self.error_names) - 3 * self.landmarks
+
+    def placeable(self, seen: BoolArray) -> BoolArray:
+        """Which landmarks (..., N) show, by what was seen (..., N, r), where they are."""
+        return np.asarray(seen[..., : self.directions].all(-1))
 
 
 def split(model: LandmarkModel, measured: Array) -> Sights:

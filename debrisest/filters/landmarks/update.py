@@ -26,7 +26,8 @@ class Rule(NamedTuple):
     tolerance: float = 0.1
     """Iterations end once no error moves by this part of its sigma."""
     false_alarm: float | None = 1e-3
-    """Probability with which the gate rejects a landmark that was seen well; none: no gate."""
+    """Probability with which the gate rejects a landmark, or a common row, that was seen well;
+    none: no gate."""
 
 
 class Frame(NamedTuple):
@@ -67,9 +68,9 @@ def update(
     """Update with frame k, whose ``sights (run, ...)`` may be masked; noise variance inflated.
 
     Gauss-Newton steps x_i+1 = x- [+] K_i (nu(x_i) - H_i (x- [-] x_i)). The gate judges each
-    landmark by its innovation at x-. The covariance update is Joseph's, multiplied out:
-    ``P - K W^T - W K^T`` with ``W = P H^T - K S / 2`` costs a quarter and depends on errors of the
-    gain in second order only, too.
+    landmark, and each common row by itself, by its innovation at x-. The covariance update is
+    Joseph's, multiplied out: ``P - K W^T - W K^T`` with ``W = P H^T - K S / 2`` costs a quarter and
+    depends on errors of the gain in second order only, too.
     """
     linear = _linearise(model, prior.core, prior.points, sights, k, inflation)
     used, accepted = _gated(model, prior, sights, linear, rule)
@@ -152,8 +153,14 @@ def _gated(
     runs, landmarks, each = sights.seen.shape
     seen = np.concatenate([sights.seen.reshape(runs, -1), sights.common_seen], axis=-1)
     shown: BoolArray = np.asarray(sights.seen.any(-1))
-    if rule.false_alarm is None or not shown.any():
+    if rule.false_alarm is None:
         return seen, shown
+    limits = 2.0 * gammainccinv(0.5 * np.maximum(np.arange(max(each, 1) + 1), 1), rule.false_alarm)
+    near = _near(prior, linear, slice(landmarks * each, None), limits[1])
+    used = seen.copy()
+    used[:, landmarks * each :] &= near
+    if not shown.any():
+        return used, shown
     first = np.arange(landmarks * each).reshape(landmarks, each)
     blocks = _blocks(model, prior, linear, first)
     nu, _, blocks = drop_missing(
@@ -165,11 +172,17 @@ def _gated(
     squares = (
         nu * solve(blocks.reshape(-1, each, each), nu.reshape(-1, each, 1)).reshape(nu.shape)
     ).sum(-1)
-    limits = 2.0 * gammainccinv(0.5 * np.maximum(np.arange(each + 1), 1), rule.false_alarm)
     accepted: BoolArray = shown & (squares <= limits[sights.seen.sum(-1)])
-    used = seen.copy()
     used[:, : landmarks * each] &= np.repeat(accepted, each, axis=-1)
     return used, accepted
+
+
+def _near(prior: Belief, linear: _Linear, rows: slice, limit: float) -> BoolArray:
+    """Whether each of some rows, by its own variance, is near its prediction."""
+    response = linear.response[:, rows]
+    noise = np.diagonal(linear.noise, 0, -2, -1)[:, rows]
+    variance = ((response @ prior.covariance) * response).sum(-1) + noise
+    return np.asarray(linear.innovation[:, rows] ** 2 <= limit * variance)
 
 
 def _blocks(model: LandmarkModel, prior: Belief, linear: _Linear, first: IntArray) -> Array:

@@ -1,11 +1,16 @@
 """What every estimator of pose and shape demands of its measurements."""
 
+from typing import Literal
+
+import numpy as np
+
 from debrisest.arrays import Data
+from debrisest.target.surface import FEWEST_POINTS
 
-FEWEST_POINTS = 4
 
-
-def require_measurable(data: Data) -> None:
+def require_measurable(
+    data: Data, ranges: Literal["measured_range", "landmark_range"] = "measured_range"
+) -> None:
     """Raise ValueError, in one sentence, for too few points or for a range that cannot be."""
     points = data["image_point"].shape[2]
     if points < FEWEST_POINTS:
@@ -13,7 +18,9 @@ def require_measurable(data: Data) -> None:
             f"pose and shape from one camera need at least {FEWEST_POINTS} points, "
             f"{points} were tracked"
         )
-    wrong = data["measured_range"] <= 0.0
+    if np.isnan(data["image_point"]).all(axis=(1, 2, 3)).any():
+        raise ValueError("no image shows any point")
+    wrong = data[ranges] <= 0.0
     if wrong.any():
         _, epoch = divmod(int(wrong.argmax()), wrong.shape[1])
         raise ValueError(

@@ -7,7 +7,7 @@ and constants of the sensors where they are asked for.
 from typing import ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
@@ -15,6 +15,7 @@ from debrisest.clock import Clock
 from debrisest.dynamics import log_inertia
 from debrisest.dynamics.clohessy_wiltshire import mean_motion_of
 from debrisest.filters.landmarks.landmark_model import LandmarkModel
+from debrisest.problems.camera_range.data import require_measurable
 from debrisest.problems.camera_range.model import (
     CORE,
     CORE_ERRORS,
@@ -60,6 +61,7 @@ class CameraRangeMinimal(ProblemPart):
         *("image_point", "measured_range", "landmark_range", "known_q_hc", "focal_px"),
         *("orbit_position", "orbit_velocity", "start_relative_position_h"),
     )
+    version = 2
     kind: Literal["camera_range_minimal"]
     camera_attitude: CameraAttitude = "known"
     range_to: RangeModel = "centre"
@@ -67,13 +69,27 @@ class CameraRangeMinimal(ProblemPart):
     range_bias_m: float = Field(0.8, description="by which the surface is nearer than the centre")
     range_bias_sigma_m: Positive = 0.3
     camera_bias_sigma_deg: NonNegative = Field(0.0, description="of the known attitude; 0: exact")
-    gauge_sigma_deg: NonNegative = Field(0.0, description="of the attitude at time zero")
+    gauge_sigma_deg: NonNegative = Field(
+        0.0, description="of the attitude at time zero, for landmark_filter only"
+    )
     log_inertia_sigma: Positive = 0.5
     gravity_gradient: bool = Field(True, description="whether the Earth turns the target")
     point_sigma_m: Positive = Field(1.5, description="of a point, also along the line of sight")
 
+    @model_validator(mode="after")
+    def _one_attitude(self) -> "CameraRangeMinimal":
+        if self.camera_attitude == "implied" and self.camera_bias_sigma_deg > 0.0:
+            raise ValueError(
+                "camera_bias_sigma_deg is that of a known attitude; with camera_attitude implied "
+                "there is none"
+            )
+        return self
+
     def measurements(self, data: Data) -> Array:
         """Return pixels point by point, then the range; or a range beside each point's pixels."""
+        require_measurable(
+            data, "landmark_range" if self.range_to == "landmark" else "measured_range"
+        )
         pixels = data["image_point"]
         epochs = pixels.shape[:2]
         if self.range_to != "landmark":
@@ -148,7 +164,7 @@ class CameraRangeMinimal(ProblemPart):
         """Return errors against the truth, as they are and gauge-free, and consistency."""
         told = {name: data[name] for name in _TOLD if name in data}
         q_hc = self._start_camera(data) if "true_q_hc" in data else np.empty(0)
-        return told | scores(data, q_hc, _SCORED)
+        return told | scores(data, q_hc, _SCORED, self.log_inertia_sigma)
 
     def truth(self, data: Data) -> Array | None:
         """Return the true states (run, time, n), where they are known."""
@@ -171,7 +187,9 @@ class CameraRangeMinimal(ProblemPart):
         return data["known_q_hc" if self.camera_attitude == "known" else "true_q_hc"][:, 0]
 
     def _ranged(self, data: Data) -> Array:
-        return np.eye(data["image_point"].shape[2])[data["landmark"].astype(np.int64)]
+        """1 for the point (run, time, N) that the range is held on; any where there is none."""
+        landmark = np.nan_to_num(data["landmark"]).astype(np.int64)
+        return np.eye(data["image_point"].shape[2])[landmark]
 
     def _extras(self) -> tuple[list[float], list[float]]:
         """First guess and sigma of the constants of the sensors."""
@@ -186,7 +204,7 @@ class CameraRangeMinimal(ProblemPart):
         result = []
         if self.range_to == "bias":
             distance = np.linalg.norm(data["chaser_position_h"], axis=-1)
-            result.append((distance - data["measured_range"]).mean(1, keepdims=True))
+            result.append(np.nanmean(distance - data["measured_range"], 1, keepdims=True))
         if self.camera_bias_sigma_deg > 0.0:
             back = quaternion.conjugate(data["known_q_hc"])
             result.append(quaternion.log(quaternion.multiply(back, data["true_q_hc"])).mean(1))

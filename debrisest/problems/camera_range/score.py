@@ -19,11 +19,12 @@ SEEN = 0.05
 """Features seen in a smaller part of the time are not scored."""
 
 
-def scores(data: Data, q_hc: Array, rows: IntArray) -> Data:
+def scores(data: Data, q_hc: Array, rows: IntArray, log_inertia_sigma: float | None = None) -> Data:
     """Return the errors, as far as there is a truth, and the consistency.
 
     ``q_hc (run, 4)`` is the camera's attitude at time zero which the body axes were taken from;
-    ``rows`` tells where in the covariance w, rho, v and, if there are log-ratios, s lie.
+    ``rows`` tells where in the covariance w, rho, v and, if there are log-ratios, s lie;
+    ``log_inertia_sigma`` is what was known of these before.
     """
     if "true_q_ib" not in data:
         return {}
@@ -31,7 +32,9 @@ def scores(data: Data, q_hc: Array, rows: IntArray) -> Data:
     with np.errstate(invalid="ignore"):
         result = _components(data, truth) | _norms(data, truth) | _aligned(data, truth)
         result |= _remaining(data, truth, result) | _consistency(data, result, rows)
-    return result | (_observability(data, rows[-5:]) if "log_inertia" in data else {})
+    if log_inertia_sigma is not None:
+        result |= _observability(data, rows[-5:], log_inertia_sigma)
+    return result
 
 
 def scored_features(data: Data) -> BoolArray:
@@ -127,9 +130,10 @@ def _consistency(data: Data, errors: Data, rows: IntArray) -> Data:
     return nees(data, error, data["covariance"][:, :, rows[:, None], rows])
 
 
-def _observability(data: Data, rows: IntArray) -> Data:
+def _observability(data: Data, rows: IntArray, prior_sigma: float) -> Data:
     """How well the last covariance knows the log-ratios, whose ``rows`` are these."""
-    unknown, worst = known_directions(data["covariance"][:, -1, rows[:, None], rows])
+    covariance = data["covariance"][:, -1, rows[:, None], rows]
+    unknown, worst = known_directions(covariance, prior_sigma)
     return {"unobservable_ratios": unknown.astype(np.float64), "ratio_deviation": worst}
 
 

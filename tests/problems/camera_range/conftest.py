@@ -97,10 +97,8 @@ def simulate(
         mean_motion=N,
         step=STEP,
         focal=FOCAL,
-        pixel_sigma=1.0,
-        range_sigma=0.01,
         range_model=range_to,
-        **setup,
+        **({"pixel_sigma": 1.0, "range_sigma": 0.01} | setup),
     )
     model = landmark_model(known)
     sigma = np.repeat([np.radians(0.3), 0.5, 0.02, 0.5], (3, 3, 3, 5))
