@@ -1,4 +1,4 @@
-"""What is found of the debris: consistency, the bound, and the statements of the notes."""
+"""What is found of the debris: consistency, the bound, and what each estimator is worth."""
 
 import numpy as np
 import pytest
