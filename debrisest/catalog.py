@@ -5,35 +5,35 @@ A new motion, sensor, problem or filter is a new file and a new line here.
 
 from typing import get_args
 
-from debrisest.parts.association_filters import (
+from debrisest.parts.filters.association import (
     AssociationFilter,
     JointAssociation,
     KnownAssociation,
     LinearisedAtTruth,
 )
-from debrisest.parts.camera_range_sensors import CameraRange
-from debrisest.parts.detections import Detections
-from debrisest.parts.filters import Extended, Unscented
-from debrisest.parts.first_image import FirstImage
-from debrisest.parts.landmark_filters import LandmarkBatch, LandmarkBound, LandmarkFilter
-from debrisest.parts.leader_motion import SeenFromLeader
-from debrisest.parts.motions import GravityGradient, TorqueFree
-from debrisest.parts.observers import Drift, Hold
-from debrisest.parts.orbits import KeplerOrbit, PerturbedOrbit
-from debrisest.parts.pointing import PointingControl
-from debrisest.parts.random_box import RandomBox
-from debrisest.parts.random_target import RandomPoints
-from debrisest.parts.random_tumble import RandomTumble
-from debrisest.parts.recoveries import BasisPursuit
-from debrisest.parts.relative_ellipse import ClosedEllipse
-from debrisest.parts.replay_filters import Efficient, Replay
-from debrisest.parts.satellites import Satellite
-from debrisest.parts.sensors import FeaturePoints
-from debrisest.parts.shape_guess import Guessed, ShapeGuess
-from debrisest.parts.starts import Drawn, FirstPoints, FirstSamples
-from debrisest.parts.stereo_sensors import AngularAcceleration, FirstGuess, StereoCamera
-from debrisest.parts.targets import RigidPoints
-from debrisest.parts.tracking_sensors import AttitudeKnowledge, OrbitGuess, PinholeCamera
+from debrisest.parts.filters.kalman import Extended, Unscented
+from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkBound, LandmarkFilter
+from debrisest.parts.filters.replay import Efficient, Replay
+from debrisest.parts.recoveries.basis_pursuit import BasisPursuit
+from debrisest.parts.sensors.camera_range import CameraRange
+from debrisest.parts.sensors.detections import Detections
+from debrisest.parts.sensors.feature_points import FeaturePoints
+from debrisest.parts.sensors.pointing import PointingControl
+from debrisest.parts.sensors.stereo_camera import AngularAcceleration, FirstGuess, StereoCamera
+from debrisest.parts.sensors.tracking import AttitudeKnowledge, OrbitGuess, PinholeCamera
+from debrisest.parts.starts.first_image import FirstImage
+from debrisest.parts.starts.shape_guess import Guessed, ShapeGuess
+from debrisest.parts.starts.starts import Drawn, FirstPoints, FirstSamples
+from debrisest.parts.truth.leader_motion import SeenFromLeader
+from debrisest.parts.truth.motions import GravityGradient, TorqueFree
+from debrisest.parts.truth.observers import Drift, Hold
+from debrisest.parts.truth.orbits import KeplerOrbit, PerturbedOrbit
+from debrisest.parts.truth.random_box import RandomBox
+from debrisest.parts.truth.random_target import RandomPoints
+from debrisest.parts.truth.random_tumble import RandomTumble
+from debrisest.parts.truth.relative_ellipse import ClosedEllipse
+from debrisest.parts.truth.satellites import Satellite
+from debrisest.parts.truth.targets import RigidPoints
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.problems.camera_range.redundant import CameraRangeRedundant
 from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels

@@ -13,9 +13,9 @@ import typer
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from debrisest.plan import Selection
+    from debrisest.run.plan import Selection
+    from debrisest.run.sweep import Machine
     from debrisest.scenario.load import LoadedScenario
-    from debrisest.sweep import Machine
 
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
@@ -127,7 +127,7 @@ def table(
     quiet: Unprinted = False,
 ) -> None:
     """Write and print the tables of the results that are up to date."""
-    from debrisest.plan import check_selection
+    from debrisest.run.plan import check_selection
 
     selection = _selection(runs, case, estimator, False, "assess")
     scenarios = _loaded(configs, settings)
@@ -148,8 +148,8 @@ def plot(
     """Draw the figures of the results that are up to date, as PNG and SVG."""
 
     def draw() -> None:
-        from debrisest.plan import check_selection
-        from debrisest.plots.draw import draw_all
+        from debrisest.run.plan import check_selection
+        from debrisest.show.plots.draw import draw_all
 
         selection = _selection(runs, case, estimator, False, "assess")
         scenarios = _load(configs, settings)
@@ -189,13 +189,13 @@ def _selection(
     force: bool,
     last_stage: str,
 ) -> "Selection":
-    from debrisest.plan import Selection
+    from debrisest.run.plan import Selection
 
     return Selection(runs, cases or None, estimators or None, last_stage, force)
 
 
 def _machine(jobs: int | None, cluster: str | None, quiet: bool) -> "Machine":
-    from debrisest.sweep import Machine
+    from debrisest.run.sweep import Machine
 
     return Machine(jobs or os.cpu_count() or 1, cluster, quiet)
 
@@ -207,8 +207,8 @@ def _bring(
     machine: "Machine",
     dry_run: bool,
 ) -> dict[str, str]:
-    from debrisest.plan import check_selection, plan
-    from debrisest.sweep import bring_up_to_date
+    from debrisest.run.plan import check_selection, plan
+    from debrisest.run.sweep import bring_up_to_date
 
     _told(partial(check_selection, scenarios, selection))
     if dry_run:
@@ -232,9 +232,9 @@ def _show_tables(
     check: bool,
 ) -> bool:
     """Write all tables, print them in a format; return whether a verdict is not as expected."""
-    from debrisest.sweep import chosen, tabulate, write_tables
-    from debrisest.tables.cells import unexpected
-    from debrisest.tables.render import render_all
+    from debrisest.run.sweep import chosen, tabulate, write_tables
+    from debrisest.show.tables.cells import unexpected
+    from debrisest.show.tables.render import render_all
 
     wrong: list[str] = []
     shown: list[tuple[LoadedScenario, DataFrame]] = []
@@ -266,7 +266,7 @@ def _load(configs: list[Path], settings: Sequence[str] | None) -> list["LoadedSc
     """Load all files, telling the problems of all of them at once."""
     from debrisest.errors import UserError
     from debrisest.scenario.load import load_scenario
-    from debrisest.tables.published import published_values
+    from debrisest.show.tables.published import published_values
 
     scenarios, problems = [], []
     for path in configs:

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from debrisest import store
 from debrisest.cli import app
+from debrisest.results import store
 
 SCENARIOS = Path(__file__).parent / "scenarios"
 

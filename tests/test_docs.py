@@ -10,13 +10,13 @@ import yaml
 
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.draws import Stream
-from debrisest.plan import RUNS_PER_FILE
+from debrisest.run.plan import RUNS_PER_FILE
+from debrisest.run.stages.pipeline import STAGES
 from debrisest.scenario.document import merge, parse
 from debrisest.scenario.load import load_scenario
 from debrisest.scenario.schema import ScenarioFile, scenario_model
-from debrisest.stages.pipeline import STAGES
-from debrisest.tables.cells import COLUMNS
-from debrisest.tables.verdict import SYMBOLS, Verdict
+from debrisest.show.tables.cells import COLUMNS
+from debrisest.show.tables.verdict import SYMBOLS, Verdict
 from debrisest.vocabulary import VOCABULARY, axes_of
 
 DOCS = Path(__file__).parent.parent / "docs"

@@ -9,13 +9,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from debrisest import store
-from debrisest.execute import _attributes
-from debrisest.parts.recoveries import BasisPursuit
-from debrisest.parts.sensors import FeaturePoints
-from debrisest.parts.starts import FirstSamples
-from debrisest.plan import Selection, plan
+from debrisest.parts.recoveries.basis_pursuit import BasisPursuit
+from debrisest.parts.sensors.feature_points import FeaturePoints
+from debrisest.parts.starts.starts import FirstSamples
 from debrisest.problems.tumbling.attitude import TumblingAttitude
+from debrisest.results import store
+from debrisest.run.execute import _attributes
+from debrisest.run.plan import Selection, plan
 from debrisest.scenario.load import load_scenario
 
 ONE = ("--case", "slow", "--estimator", "triad")

@@ -10,8 +10,8 @@ import pandas as pd
 import pytest
 import yaml
 
-from debrisest import store
 from debrisest.errors import UserError
+from debrisest.results import store
 from debrisest.scenario.document import parse
 from debrisest.scenario.load import load_scenario
 

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from debrisest import store
+from debrisest.results import store
 from debrisest.scenario.document import parse
 
 RUNS, EPOCHS = 3, 12

@@ -78,8 +78,8 @@ def test_a_killed_worker_is_told_in_words(small: Path, tmp_path: Path, process: 
 def test_no_half_written_table_replaces_a_table(
     moment: str, swept: Path, small: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from debrisest import store
-    from debrisest.tables import cells
+    from debrisest.results import store
+    from debrisest.show.tables import cells
 
     def fail(*_: Any, **__: Any) -> None:
         raise KeyboardInterrupt
@@ -100,7 +100,7 @@ def test_no_half_written_table_replaces_a_table(
 def test_ctrl_c_in_process(
     small: Path, tmp_path: Path, reference: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from debrisest import store
+    from debrisest.results import store
 
     original, written = store.write, []
 

@@ -15,11 +15,11 @@ import pandas as pd
 import pytest
 from scipy.stats import chi2
 
-from debrisest import store
 from debrisest.catalog import CATALOG
 from debrisest.draws import Stream
 from debrisest.filters.history import HistoryWriter
 from debrisest.filters.model import Model
+from debrisest.results import store
 from debrisest.roles import (
     Filtered,
     FilterPart,

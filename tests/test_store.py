@@ -15,9 +15,10 @@ import numpy as np
 import pytest
 import xarray
 
-from debrisest import files, store
+from debrisest import files
 from debrisest.files import remove_leftovers
-from debrisest.store import Condition
+from debrisest.results import store
+from debrisest.results.store import Condition
 from debrisest.vocabulary import VOCABULARY
 
 

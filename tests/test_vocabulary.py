@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
-from debrisest import store
+from debrisest.results import store
 from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, table_scale
 
 SCALES = {

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from debrisest import store
+from debrisest.results import store
 from debrisest.scenario.document import parse
 
 RUNS, DURATION = 2, 120

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from debrisest.arrays import Array
+from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import Leader
 
@@ -30,16 +31,6 @@ def rotate(q: NDArray[Any], v: NDArray[Any], raw: bool = False) -> NDArray[Any]:
 def unrotate(q: NDArray[Any], v: NDArray[Any], raw: bool = False) -> NDArray[Any]:
     """``D^T v (..., 3)``."""
     return rotate(np.concatenate([q[..., :1], -q[..., 1:]], axis=-1), v, raw)
-
-
-def cross(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
-    """Vector product ``(..., 3)``, several times faster than numpy's."""
-    a0, a1, a2 = a[..., 0], a[..., 1], a[..., 2]
-    b0, b1, b2 = b[..., 0], b[..., 1], b[..., 2]
-    x = a1 * b2 - a2 * b1
-    result = np.empty((*x.shape, 3), x.dtype)
-    result[..., 0], result[..., 1], result[..., 2] = x, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
-    return result
 
 
 def rotation_derivative(
@@ -76,16 +67,6 @@ def rotation_step(
     w3, q3 = rotation_derivative(rate + half * w2, q + half * q2, slope, middle, raw)
     w4, q4 = rotation_derivative(rate + step * w3, q + step * q3, slope, end, raw)
     return rate + sixth * (w1 + 2.0 * (w2 + w3) + w4), q + sixth * (q1 + 2.0 * (q2 + q3) + q4)
-
-
-def matrix_of_cross(v: Array) -> Array:
-    """``[v]x (..., 3, 3)``, with ``[v]x w = v x w``."""
-    x, y, z = v[..., 0], v[..., 1], v[..., 2]
-    result = np.zeros((*v.shape, 3))
-    result[..., 0, 1], result[..., 0, 2] = -z, y
-    result[..., 1, 0], result[..., 1, 2] = z, -x
-    result[..., 2, 0], result[..., 2, 1] = -y, x
-    return result
 
 
 def rotation_by_quaternion(q: Array, v: Array, raw: bool = False) -> Array:

@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import log_inertia
-from debrisest.dynamics.relative_rotation import cross, matrix_of_cross
 
 TURNING = 6
 """Errors that move: attitude and rate; the five log-ratios follow them."""

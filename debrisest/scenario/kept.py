@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from debrisest.assessment.statistics import window_mask
-from debrisest.parts.filters import kept_epochs
+from debrisest.parts.filters.kalman import kept_epochs
 from debrisest.roles import FilterPart
 from debrisest.scenario.document import KeyPath
 from debrisest.scenario.schema import Scenario, Table, window_of

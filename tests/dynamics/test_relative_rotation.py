@@ -6,12 +6,11 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
+from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics.inertia_ratios import ratios, slopes
 from debrisest.dynamics.relative_orbit import leader_orbit
 from debrisest.dynamics.relative_pose import exact_rotation
 from debrisest.dynamics.relative_rotation import (
-    cross,
-    matrix_of_cross,
     rotate,
     rotation_by_quaternion,
     rotation_matrix,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from debrisest.filters.association.joint import MOST_TRACKS, exclusive, joint
 from debrisest.filters.association.weights import Validation, probabilistic
-from debrisest.parts.detections import MOST_COMPANIONS
+from debrisest.parts.sensors.detections import MOST_COMPANIONS
 
 RULE = Validation(gate=9.0, detection_probability=0.8)
 

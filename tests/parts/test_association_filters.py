@@ -6,7 +6,7 @@ from pydantic import ValidationError
 
 from debrisest.clock import Clock
 from debrisest.filters.association.scan_model import ScanModel
-from debrisest.parts.association_filters import (
+from debrisest.parts.filters.association import (
     AssociationFilter,
     JointAssociation,
     KnownAssociation,

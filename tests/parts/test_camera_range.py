@@ -11,14 +11,14 @@ from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics.relative_motion import hill_frame
-from debrisest.parts.camera_range_sensors import CameraRange
-from debrisest.parts.motions import TorqueFree
-from debrisest.parts.orbits import KeplerOrbit
-from debrisest.parts.random_box import RandomBox
-from debrisest.parts.random_tumble import RandomTumble
-from debrisest.parts.relative_ellipse import ClosedEllipse
-from debrisest.parts.shape_guess import Guessed, ShapeGuess
-from debrisest.parts.targets import Feature, RigidPoints
+from debrisest.parts.sensors.camera_range import CameraRange
+from debrisest.parts.starts.shape_guess import Guessed, ShapeGuess
+from debrisest.parts.truth.motions import TorqueFree
+from debrisest.parts.truth.orbits import KeplerOrbit
+from debrisest.parts.truth.random_box import RandomBox
+from debrisest.parts.truth.random_tumble import RandomTumble
+from debrisest.parts.truth.relative_ellipse import ClosedEllipse
+from debrisest.parts.truth.targets import Feature, RigidPoints
 
 CLOCK = Clock(300.0, 5.0)
 PLACE, SPEED = [5.0, 17.3205081, 5.90884652], [9.3358198e-3, -1.078007613e-2, -1.12316e-3]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from debrisest.filters.history import FilterStatus, History
-from debrisest.parts.filtered import filtered
+from debrisest.parts.filters.filtered import filtered
 
 RUNS, EPOCHS = 2, 4
 

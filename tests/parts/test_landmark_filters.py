@@ -8,14 +8,14 @@ from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics.relative_motion import hill_frame
-from debrisest.parts.camera_range_sensors import CameraRange
-from debrisest.parts.first_image import FirstImage
-from debrisest.parts.landmark_filters import LandmarkBatch, LandmarkBound, LandmarkFilter
-from debrisest.parts.motions import GravityGradient
-from debrisest.parts.orbits import KeplerOrbit
-from debrisest.parts.relative_ellipse import ClosedEllipse
-from debrisest.parts.shape_guess import Guessed, ShapeGuess
-from debrisest.parts.targets import RigidPoints
+from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkBound, LandmarkFilter
+from debrisest.parts.sensors.camera_range import CameraRange
+from debrisest.parts.starts.first_image import FirstImage
+from debrisest.parts.starts.shape_guess import Guessed, ShapeGuess
+from debrisest.parts.truth.motions import GravityGradient
+from debrisest.parts.truth.orbits import KeplerOrbit
+from debrisest.parts.truth.relative_ellipse import ClosedEllipse
+from debrisest.parts.truth.targets import RigidPoints
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.roles import Filtered, Given
 

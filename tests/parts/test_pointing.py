@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import kepler
-from debrisest.parts.pointing import PointingControl
+from debrisest.parts.sensors.pointing import PointingControl
 
 INERTIA = [[1.066e-3, -4e-6, 7e-6], [-4e-6, 1.042e-3, 5e-6], [7e-6, 5e-6, 9.62e-4]]
 KEYS = {"kind": "pointing_control", "inertia_kg_m2": INERTIA, "robust_term": "conditional"}

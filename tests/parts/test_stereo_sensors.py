@@ -9,10 +9,10 @@ from pydantic import ValidationError
 from scipy.spatial.transform import Rotation
 
 from debrisest.attitude import quaternion
-from debrisest.parts.leader_motion import SeenFromLeader
-from debrisest.parts.orbits import KeplerOrbit
-from debrisest.parts.random_target import RandomPoints
-from debrisest.parts.stereo_sensors import AngularAcceleration, FirstGuess, StereoCamera
+from debrisest.parts.sensors.stereo_camera import AngularAcceleration, FirstGuess, StereoCamera
+from debrisest.parts.truth.leader_motion import SeenFromLeader
+from debrisest.parts.truth.orbits import KeplerOrbit
+from debrisest.parts.truth.random_target import RandomPoints
 from debrisest.roles import SimulationPart
 from debrisest.scenario.checks import scenario_problems
 from debrisest.scenario.schema import Scenario

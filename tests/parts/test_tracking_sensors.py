@@ -11,10 +11,10 @@ from debrisest.arrays import Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import kepler
-from debrisest.parts.detections import Detections
-from debrisest.parts.orbits import KeplerOrbit, PerturbedOrbit
-from debrisest.parts.satellites import Satellite
-from debrisest.parts.tracking_sensors import AttitudeKnowledge, OrbitGuess, PinholeCamera
+from debrisest.parts.sensors.detections import Detections
+from debrisest.parts.sensors.tracking import AttitudeKnowledge, OrbitGuess, PinholeCamera
+from debrisest.parts.truth.orbits import KeplerOrbit, PerturbedOrbit
+from debrisest.parts.truth.satellites import Satellite
 from debrisest.sensors.detections import unlabelled
 
 DEBRIS = {

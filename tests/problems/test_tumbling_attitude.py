@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from debrisest.assessment.principal_axes import RELABELINGS
 from debrisest.clock import Clock
-from debrisest.parts.filters import Unscented
+from debrisest.parts.filters.kalman import Unscented
 from debrisest.problems.tumbling import attitude as problem
 from debrisest.roles import Given
 

@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 from debrisest.assessment.bound import paired_errors
 from debrisest.assessment.consistency import interval, normalized_square
 from debrisest.clock import Clock
-from debrisest.parts.replay_filters import Efficient
-from debrisest.parts.starts import FirstPoints
+from debrisest.parts.filters.replay import Efficient
+from debrisest.parts.starts.starts import FirstPoints
 from debrisest.problems.tumbling.points import MotionVariances, TumblingPoints
 from debrisest.problems.tumbling.points_inertia import log_tensor
 from debrisest.roles import Given

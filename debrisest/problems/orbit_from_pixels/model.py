@@ -17,8 +17,8 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
+from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import perturbed_orbit
-from debrisest.dynamics.relative_rotation import matrix_of_cross
 from debrisest.filters.association.scan_model import ScanModel
 from debrisest.sensors import pinhole
 

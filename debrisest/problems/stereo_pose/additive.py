@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from debrisest.arrays import Array
+from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import relative_acceleration
 from debrisest.dynamics.relative_rotation import (
-    matrix_of_cross,
     rotation_by_quaternion,
     rotation_derivative,
     rotation_matrix,

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
+from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import translation_step
-from debrisest.dynamics.relative_rotation import cross, matrix_of_cross, rotation_step
+from debrisest.dynamics.relative_rotation import rotation_step
 from debrisest.problems.stereo_pose.model import POINTS, POSITION, RATE, VELOCITY, K, Q, Setup
 
 ATTITUDE_ERROR, K_ERROR, POINT_ERROR = slice(9, 12), slice(12, 14), slice(14, None)

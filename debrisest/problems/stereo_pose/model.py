@@ -19,9 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from debrisest.arrays import IntArray
+from debrisest.attitude.vectors import cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import Leader, leader_orbit, translation_step
-from debrisest.dynamics.relative_rotation import cross, rotate, rotation_step, unrotate
+from debrisest.dynamics.relative_rotation import rotate, rotation_step, unrotate
 from debrisest.sensors import stereo
 
 POSITION, VELOCITY, RATE = slice(0, 3), slice(3, 6), slice(6, 9)

@@ -4,9 +4,9 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
+from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import transitions
-from debrisest.dynamics.relative_rotation import matrix_of_cross
 from debrisest.filters.replay.replay_model import ReplayModel
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose.model import (

@@ -5,7 +5,7 @@ import numpy as np
 from debrisest.arrays import Array, Data
 from debrisest.assessment.nees import covariance_epochs, nees
 from debrisest.attitude import quaternion
-from debrisest.dynamics.relative_rotation import matrix_of_cross
+from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.problems.stereo_pose.chart import difference, robocentric
 from debrisest.problems.stereo_pose.data import state_of
 from debrisest.problems.stereo_pose.model import K, Q

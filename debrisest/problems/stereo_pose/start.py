@@ -4,8 +4,8 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
+from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
-from debrisest.dynamics.relative_rotation import cross, matrix_of_cross
 from debrisest.filters import weights
 from debrisest.filters.covariance import solve
 from debrisest.problems.stereo_pose.model import (

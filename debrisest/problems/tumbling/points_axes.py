@@ -9,7 +9,7 @@ import numpy as np
 from debrisest.arrays import Array, Data
 from debrisest.assessment.principal_axes import best_relabeling
 from debrisest.attitude import quaternion
-from debrisest.dynamics.relative_rotation import matrix_of_cross
+from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.problems.tumbling import points_motion as body
 from debrisest.problems.tumbling.points_inertia import log_tensor, principal_logs
 

@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import kepler, perturbed_orbit
-from debrisest.parts.detections import Detections
-from debrisest.parts.starts import Drawn
-from debrisest.parts.tracking_sensors import AttitudeKnowledge, OrbitGuess
+from debrisest.parts.sensors.detections import Detections
+from debrisest.parts.sensors.tracking import AttitudeKnowledge, OrbitGuess
+from debrisest.parts.starts.starts import Drawn
 from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels
 
 

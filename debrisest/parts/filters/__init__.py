@@ -1,0 +1,1 @@
+"""Filters that a scenario can name."""

@@ -1,0 +1,77 @@
+"""Filters that a scenario can name."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from debrisest.clock import Clock
+from debrisest.filters.extended import extended
+from debrisest.filters.gate import Gate
+from debrisest.filters.model import Model
+from debrisest.filters.unscented import UnscentedParameters, unscented
+from debrisest.parts.filters.filtered import filtered
+from debrisest.roles import Filtered, FilterPart, Given, NonNegative, Positive
+
+KeptTimes = Annotated[
+    list[NonNegative],
+    Field(description="times whose covariance is kept, beside the last epoch's"),
+]
+
+
+def kept_epochs(times: list[float], clock: Clock) -> list[int]:
+    """Return the epochs nearest to the times, without those after the end."""
+    last = len(clock.times) - 1
+    return sorted({epoch for time in times if (epoch := round(time / clock.step)) <= last})
+
+
+class Unscented(FilterPart):
+    """The unscented Kalman filter; the paper's form does not redraw its sigma points."""
+
+    needs = ("model",)
+    kind: Literal["unscented"]
+    alpha: Positive = 1.0
+    beta: float = 2.0
+    kappa: float = 0.0
+    redraw: bool = False
+    keep_s: KeptTimes = []
+
+    def run(self, model: Model, given: Given) -> Filtered:
+        """Return the estimates of all epochs."""
+        spread = UnscentedParameters(self.alpha, self.beta, self.kappa)
+        history = unscented(
+            model,
+            given.state,
+            given.covariance,
+            given.measured,
+            spread,
+            keep=kept_epochs(self.keep_s, given.clock),
+            redraw=self.redraw,
+        )
+        return filtered(history)
+
+
+class Extended(FilterPart):
+    """The extended Kalman filter, or with more than one iteration the iterated one."""
+
+    needs = ("model",)
+    kind: Literal["extended"]
+    iterations: Annotated[int, Field(ge=1)] = 1
+    tolerance: Positive = 1e-2
+    stop: Literal["relative_norm", "scaled"] = "scaled"
+    gate: bool = False
+    keep_s: KeptTimes = []
+
+    def run(self, model: Model, given: Given) -> Filtered:
+        """Return the estimates of all epochs."""
+        history = extended(
+            model,
+            given.state,
+            given.covariance,
+            given.measured,
+            iterations=self.iterations,
+            tolerance=self.tolerance,
+            stop=self.stop,
+            keep=kept_epochs(self.keep_s, given.clock),
+            gate=Gate() if self.gate else None,
+        )
+        return filtered(history, self.gate, updates=history.iterations)

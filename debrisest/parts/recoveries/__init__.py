@@ -1,0 +1,1 @@
+"""Recoveries that a scenario can name."""

@@ -1,0 +1,1 @@
+"""Sensors that a scenario can name."""

@@ -1,0 +1,167 @@
+"""Satellites that turn their cameras after a piece of debris before it leaves the image."""
+
+from functools import lru_cache
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, field_validator
+
+from debrisest.arrays import Array, Data
+from debrisest.attitude import euler, quaternion
+from debrisest.clock import Clock
+from debrisest.control.camera import Camera
+from debrisest.control.closed_loop import ClosedLoop, Factors, Frozen
+from debrisest.control.rigid_spacecraft import spacecraft
+from debrisest.control.robust_term import Reading, Uncertainty
+from debrisest.control.track import seen_from
+from debrisest.control.two_stage import Controller
+from debrisest.draws import Draws, Stream
+from debrisest.dynamics.local_frame import Axes, local_axes
+from debrisest.parts.sensors.pointing_checks import control_steps, require_room, require_view
+from debrisest.parts.sensors.pointing_keys import Holding, Switching, Tracking, gains, switch
+from debrisest.parts.sensors.pointing_results import epochs, history, scalars
+from debrisest.roles import NonNegative, Positive, SimulationPart, Vector3
+from debrisest.sensors.pinhole import BODY_TO_CAMERA
+from debrisest.vocabulary import has_runs
+
+_INPUTS = (
+    *("orbit_position", "orbit_velocity", "observer_position", "observer_velocity"),
+    *("camera_scale", "image_half_size"),
+)
+
+_UNCERTAINTY = Uncertainty()
+
+
+class PointingControl(SimulationPart):
+    """The closed loop of camera, controller and spacecraft, alike on all satellites.
+
+    The controller sees the debris' own pixel and never an estimate.
+    """
+
+    version = 2
+    tried = True
+    needs = _INPUTS
+    gives = (
+        *("true_q_ic", "true_euler", "section", "true_pixel", "cameras_at_start"),
+        *("pointing_status", "control_time_s", "torque", "control_pixel"),
+        *("first_section", "settling_time", "stage_one_time"),
+        *("peak_torque", "total_variation", "final_angle"),
+    )
+    kind: Literal["pointing_control"]
+    inertia_kg_m2: Annotated[list[Vector3], Field(min_length=3, max_length=3)]
+    axes: Axes = Field("repaired", description="local orbital axes that angles count from")
+    robust_term: Reading = "literal"
+    margin_px: NonNegative = Field(2.5, description="from the edge, where turning starts")
+    control_step_s: Positive = Field(0.02, description="at most; a step has a whole number of them")
+    torque_limit_n_m: Positive | None = Field(None, description="of each axis")
+    anti_windup: bool = Field(True, description="integrals stand still at the torque limit")
+    angle_error: NonNegative = Field(0.05, description="share of the measured Euler angles")
+    rate_error: NonNegative = Field(0.05, description="share of the measured rates")
+    errors: Literal["constant", "white"] = "constant"
+    round_pixel: bool = True
+    orbital_rate: Literal["ignored", "counted"] = "ignored"
+    held_in: Frozen = Field("local", description="axes in which cameras stand still meanwhile")
+    drift_error: NonNegative = Field(
+        _UNCERTAINTY.drift, description="share of the state function that is wrong"
+    )
+    gain_error: Annotated[float, Field(ge=0, lt=1)] = Field(
+        _UNCERTAINTY.gain, description="share of the input matrix that is wrong"
+    )
+    tracking: Tracking = Tracking()
+    holding: Holding = Holding()
+    switching: Switching = Switching()
+    store_every: Annotated[int, Field(ge=1)] = Field(25, description="control steps")
+
+    @field_validator("inertia_kg_m2")
+    @classmethod
+    def _of_a_body(cls, inertia: list[list[float]]) -> list[list[float]]:
+        spacecraft(np.array(inertia))
+        return inertia
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return attitude, sections, exact pixels, and what the controller did.
+
+        Where all runs are alike, which is usual, one is simulated for all of them.
+        """
+        inputs = [np.asarray(data[name], dtype=np.float64) for name in _INPUTS]
+        if self.errors == "white" or any((x != x[:1]).any() for x in inputs):
+            return _simulated(self, inputs, clock, draws)
+        packed = ((x.shape[1:], x[0].tobytes()) for x in inputs)
+        one, runs = _simulated_once(self.model_dump_json(), clock, *packed), len(draws.runs)
+        return {
+            name: np.repeat(value, runs, axis=0) if has_runs(name) else value.copy()
+            for name, value in one.items()
+        }
+
+
+@lru_cache(maxsize=4)
+def _simulated_once(part: str, clock: Clock, *inputs: tuple[tuple[int, ...], bytes]) -> Data:
+    """The same for all chunks of runs that have the same inputs."""
+    arrays = [np.frombuffer(values).reshape(1, *shape) for shape, values in inputs]
+    return _simulated(PointingControl.model_validate_json(part), arrays, clock, None)
+
+
+def _simulated(
+    part: PointingControl, inputs: list[Array], clock: Clock, draws: Draws | None
+) -> Data:
+    observers = inputs[2], inputs[3]
+    require_room(part.margin_px, inputs[5])
+    loop = _loop(part, inputs, clock, draws)
+    angles = np.zeros(loop.track.point_o[:, 0].shape)
+    visible = loop.in_view(angles)
+    if part.axes == "repaired":
+        require_view(visible)
+    happened = loop.run(angles)
+    q_io = quaternion.from_matrix(local_axes(*observers, part.axes))
+    q_ib = quaternion.multiply(q_io, euler.to_quaternion(happened.angles))
+    q_bc = quaternion.from_matrix(BODY_TO_CAMERA.T)
+    return {
+        "true_q_ic": quaternion.multiply(q_ib, q_bc),
+        "cameras_at_start": visible.sum(-1).astype(np.float64),
+        **epochs(happened),
+        **history(happened, clock, part.store_every),
+        **scalars(happened, clock),
+    }
+
+
+def _loop(
+    part: PointingControl, inputs: list[Array], clock: Clock, draws: Draws | None
+) -> ClosedLoop:
+    position, velocity, observer_position, observer_velocity, scale, half_size = inputs
+    track = seen_from(position, velocity, observer_position, observer_velocity, part.axes)
+    craft = spacecraft(np.array(part.inertia_kg_m2))
+    camera = Camera(scale[:, None], half_size[:, None], part.margin_px, part.round_pixel)
+    controller = Controller(
+        craft=craft,
+        scale=camera.scale,
+        reading=part.robust_term,
+        tracking=gains(part.tracking),
+        holding=gains(part.holding),
+        uncertainty=Uncertainty(part.drift_error, part.gain_error),
+        switch=switch(part.switching),
+        torque_limit=np.inf if part.torque_limit_n_m is None else part.torque_limit_n_m,
+        anti_windup=part.anti_windup,
+    )
+    substeps = control_steps(clock.step, part.control_step_s)
+    return ClosedLoop(
+        controller=controller,
+        camera=camera,
+        plant=craft,
+        track=track,
+        step=clock.step,
+        substeps=substeps,
+        factors=_factors(part, (substeps, observer_position.shape[2], 6), len(scale), draws),
+        turning_axes=part.orbital_rate == "counted",
+        frozen=part.held_in,
+    )
+
+
+def _factors(
+    part: PointingControl, shape: tuple[int, ...], runs: int, draws: Draws | None
+) -> Factors:
+    """What multiplies measured angles and rates: the same always, or new at every control step."""
+    shares = np.repeat([part.angle_error, part.rate_error], 3)
+    constant = np.broadcast_to(1.0 + shares, (runs, *shape))
+    if draws is None or part.errors == "constant":
+        return lambda: constant
+    return lambda: 1.0 + shares * draws.normal(Stream.MEASUREMENT_NOISE, shape)

@@ -1,0 +1,1 @@
+"""Starts that a scenario can name."""

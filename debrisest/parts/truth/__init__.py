@@ -1,0 +1,1 @@
+"""Targets, orbits, motions and observers that a scenario can name."""

@@ -1,0 +1,1 @@
+"""The runner: what has to run, where, and the stages it runs."""

@@ -1,0 +1,43 @@
+"""Figures on disk, as PNG and SVG."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from debrisest.files import replacing
+from debrisest.show.plots.style import style
+
+FORMATS: dict[str, dict[str, Any]] = {
+    "png": {"dpi": 150, "metadata": {"Software": None}},
+    "svg": {"dpi": 300, "metadata": {"Date": None}},
+}
+"""In an SVG only what is dense has a resolution."""
+MOST_MARKERS, MOST_VERTICES = 300, 2000
+"""What has more of them is drawn as an image, which keeps an SVG below about 1 MB."""
+
+_NO_MARKER = (None, "None", "none", " ", "")
+
+
+def write(figure: Figure, folder: Path, name: str) -> Iterator[Path]:
+    """Write a figure in every format, each in one step; yield the paths."""
+    _rasterise_dense(figure)
+    for form, options in FORMATS.items():
+        path = folder / f"{name}.{form}"
+        with replacing(path) as temporary, style():
+            figure.savefig(temporary, format=form, **options)
+        figure.set_layout_engine("none")
+        yield path
+
+
+def _rasterise_dense(figure: Figure) -> None:
+    for axis in figure.axes:
+        for line in axis.lines:
+            clouded = line.get_marker() not in _NO_MARKER
+            most = MOST_MARKERS if clouded else MOST_VERTICES
+            line.set_rasterized(np.size(line.get_xdata()) > most)
+        for collection in axis.collections:
+            vertices = sum(np.shape(path.vertices)[0] for path in collection.get_paths())
+            collection.set_rasterized(vertices > MOST_VERTICES)

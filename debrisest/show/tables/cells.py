@@ -1,0 +1,180 @@
+"""The cells of a scenario's tables: measured figures beside published values."""
+
+import zlib
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from debrisest.arrays import Array, BoolArray
+from debrisest.assessment.consistency import consistent_interval
+from debrisest.assessment.statistics import bootstrap
+from debrisest.run.plan import SIMULATED
+from debrisest.scenario.load import LoadedScenario
+from debrisest.scenario.schema import Table, Tables
+from debrisest.show.tables.published import CellKey, Published, published_values
+from debrisest.show.tables.results import Result
+from debrisest.show.tables.verdict import Verdict, consistency, interval_meets, verdict
+from debrisest.vocabulary import TWO_SIDED, VOCABULARY, table_scale
+
+COLUMNS = [
+    *("table", "case", "estimator", "quantity", "unit", "statistic", "window"),
+    *("published", "measured", "ci_low", "ci_high", "bound"),
+    *("runs", "failed", "diverged", "verdict", "consistent_low", "consistent_high"),
+]
+
+Results = Mapping[tuple[str, str], Result]
+
+
+def cells(scenario: LoadedScenario, results: Results) -> pd.DataFrame:
+    """Return one row per cell, in the order of the layout, then case, estimator, quantity."""
+    published = published_values(scenario)
+    rows = [
+        _row(key, estimator, table, scenario, results, published.get(key))
+        for table in scenario.common.tables.layout
+        for key, estimator in _keys(table, scenario)
+    ]
+    return pd.DataFrame([row for row in rows if row is not None], columns=COLUMNS)
+
+
+def unexpected(
+    scenario: LoadedScenario, rows: pd.DataFrame, asked: Callable[[str, str], bool]
+) -> list[str]:
+    """Return a sentence for each cell that is asked for and is not there, or not as expected."""
+    found = []
+    present = {
+        (CellKey(*(row[field] for field in CellKey._fields)), row["estimator"]): row
+        for row in rows.to_dict("records")
+    }
+    for key, entry in published_values(scenario).items():
+        for estimator, expected in entry.expected.items():
+            if not asked(key.case, estimator):
+                continue
+            row = present.get((key, estimator))
+            said = "no result" if row is None else _disagreement(row, entry, expected)
+            if said:
+                found.append(
+                    f"Table {key.table}, case {key.case}, {estimator}, {key.quantity} "
+                    f"({key.statistic}, {key.window}): {said}, expected {' or '.join(expected)}"
+                )
+    return found
+
+
+def _disagreement(row: Mapping[Hashable, Any], entry: Published, expected: list[Verdict]) -> str:
+    """Return what speaks against the expected verdicts: not the cell, nor its interval."""
+    interval = row["ci_low"], row["ci_high"]
+    meets = (interval_meets(v, *interval, entry.value, entry.factor) for v in expected)
+    if row["verdict"] in expected or any(meets):
+        return ""
+    return (
+        f"{row['verdict']}, {row['measured']:.4g} [{row['ci_low']:.4g}, {row['ci_high']:.4g}] "
+        f"against {entry.value:.4g}"
+    )
+
+
+def _keys(table: Table, scenario: LoadedScenario) -> Iterator[tuple[CellKey, str]]:
+    names = table.cases or [*scenario.cases, *scenario.common.tables.means]
+    columns = product(table.statistics, table.windows)
+    estimators = [SIMULATED] if table.stage == "simulate" else scenario.common.estimators
+    cells = product(names, estimators, table.quantities)
+    for (statistic, window), (case, estimator, quantity) in product(columns, cells):
+        yield CellKey(table.table, case, quantity, statistic, window), estimator
+
+
+def _row(
+    key: CellKey,
+    estimator: str,
+    table: Table,
+    scenario: LoadedScenario,
+    results: Results,
+    published: Published | None,
+) -> dict[str, object] | None:
+    found = _measured(key, estimator, table, scenario, results)
+    if found is None:
+        return None
+    bound = None
+    if estimator != SIMULATED:
+        name = scenario.common.estimators[estimator].bound
+        bound = _measured(key, name, table, scenario, results)
+    return {
+        **key._asdict(),
+        "estimator": estimator,
+        "unit": _unit(table, key.quantity),
+        "published": published.value if published else None,
+        **found,
+        "bound": bound["measured"] if bound else np.nan,
+        "verdict": str(_said(key.quantity, found, published)),
+    }
+
+
+def _said(quantity: str, found: Mapping[str, Any], published: Published | None) -> Verdict:
+    lost = (found["diverged"] + found["failed"]) / found["runs"]
+    if published is None:
+        interval = found["consistent_low"], found["consistent_high"]
+        return consistency(found["measured"], *interval, lost)
+    said = verdict(found["measured"], published.value, published.factor, lost)
+    off = quantity in TWO_SIDED and said in (Verdict.BETTER, Verdict.WORSE)
+    return Verdict.NOT_REPRODUCED if off else said
+
+
+def _measured(
+    key: CellKey, estimator: str, table: Table, scenario: LoadedScenario, results: Results
+) -> dict[str, Any] | None:
+    """Return the figure of a cell with its interval and its runs, or None if it is not there."""
+    tables, dataset = scenario.common.tables, _dataset(table, key.quantity)
+    parts = [results.get((case, estimator)) for case in tables.means.get(key.case, [key.case])]
+    present = [part for part in parts if part is not None and part.shows(dataset)]
+    if not present or len(present) < len(parts):
+        return None
+    freedom = [part.freedom(dataset, key.statistic, key.window) for part in present]
+    if not any(part.seen(dataset, key.window) for part in present):
+        return None
+    groups = [_figures(part, key, table, tables) for part in present]
+    kept = [figures[keep] for figures, keep, _ in groups]
+    free = [degrees[keep] for degrees, (_, keep, _) in zip(freedom, groups)]
+    seed = zlib.crc32("|".join((*key, estimator)).encode())
+    measured, low, high = (_rounded(x) for x in bootstrap(key.statistic, kept, seed))
+    consistent = [_rounded(x) for x in consistent_interval(key.statistic, free)]
+    return {
+        "measured": measured,
+        "ci_low": low,
+        "ci_high": high,
+        "runs": sum(part.runs for part in present),
+        "failed": sum(len(part.failures) for part in present),
+        "diverged": sum(int(lost.sum()) for *_, lost in groups),
+        "consistent_low": consistent[0],
+        "consistent_high": consistent[1],
+    }
+
+
+def _dataset(table: Table, quantity: str) -> str:
+    """Return where a quantity lies: what a recovery gives is told apart by its name."""
+    recovered = f"recovered_{quantity}"
+    return recovered if table.stage == "recover" and recovered in VOCABULARY else quantity
+
+
+def _unit(table: Table, quantity: str) -> str:
+    return table.units.get(quantity) or VOCABULARY[_dataset(table, quantity)].table_unit
+
+
+def _figures(
+    part: Result, key: CellKey, table: Table, tables: Tables
+) -> tuple[Array, BoolArray, BoolArray]:
+    """Return figures per run, which of them count, and which runs diverged.
+
+    The rules of divergence speak of a filter's result; a recovery counts unless it is not finite.
+    """
+    dataset = _dataset(table, key.quantity)
+    figures = part.figures(dataset, key.statistic, key.window)
+    figures = figures * (table_scale(dataset, _unit(table, key.quantity)) / table_scale(dataset))
+    lost = part.good & ~np.isfinite(figures)
+    if table.stage == "filter" and not table.count_diverged:
+        lost |= part.diverged(tables.diverged)
+    return figures, part.good & ~lost, lost
+
+
+def _rounded(value: float) -> float:
+    """Keep six digits, so that the last bits of a sum never show in a table."""
+    return float(f"{value:.6g}")

@@ -1,0 +1,149 @@
+"""Tables as text: for the terminal, Markdown, LaTeX, CSV and JSON."""
+
+from collections.abc import Callable
+from typing import Literal
+
+import pandas as pd
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from debrisest.scenario.load import LoadedScenario
+from debrisest.show.tables.layout import Sheet, sheets
+from debrisest.show.tables.verdict import (
+    CONSISTENCY,
+    LEGEND,
+    LEGEND_OF_CONSISTENCY,
+    LEGEND_OF_LOST,
+)
+
+_COLOURS = {
+    "=": "green",
+    "<": "cyan",
+    ">": "red",
+    "x": "magenta",
+    "consistent": "green",
+    "over-cautious": "cyan",
+    "over-confident": "red",
+}
+
+
+def render(scenario: LoadedScenario, cells: pd.DataFrame, form: str) -> str:
+    """Return the tables of a scenario in one of FORMS."""
+    return FORMS[form](scenario, cells)
+
+
+def render_all(tables: list[tuple[LoadedScenario, pd.DataFrame]], form: str) -> str:
+    """Return the tables of several scenarios; in CSV and JSON a column tells them apart."""
+    if len(tables) > 1 and form in ("csv", "json"):
+        named = [cells.assign(scenario=scenario.name) for scenario, cells in tables]
+        together = pd.concat(named, ignore_index=True)
+        columns = ["scenario", *together.columns.drop("scenario")]
+        return render(tables[0][0], together[columns], form)
+    return "".join(render(scenario, cells, form) for scenario, cells in tables)
+
+
+def _csv(_: LoadedScenario, cells: pd.DataFrame) -> str:
+    return str(cells.to_csv(index=False, lineterminator="\n"))
+
+
+def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
+    return str(cells.to_json(orient="records", indent=1, double_precision=15)) + "\n"
+
+
+def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
+    parts = [f"# {scenario.common.title}", scenario.common.source, *_legends(cells)]
+    for sheet in sheets(scenario, cells):
+        lines = [sheet.heads, ["---"] * len(sheet.heads), *sheet.rows]
+        escaped = [[text.replace("|", "\\|") for text in line] for line in lines]
+        body = "\n".join(f"| {' | '.join(line)} |" for line in escaped)
+        parts.append(f"## Table {sheet.number}: {sheet.title}\n\n{body}")
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def _legends(cells: pd.DataFrame) -> list[str]:
+    """Return what explains the signs, the numbers in brackets and the words of these cells."""
+    signs = [LEGEND] if cells["published"].notna().any() else []
+    lost = [LEGEND_OF_LOST] if (cells["failed"] + cells["diverged"] > 0).any() else []
+    words = [LEGEND_OF_CONSISTENCY] if cells["verdict"].isin(CONSISTENCY).any() else []
+    return ["; ".join(signs + lost)] * bool(signs + lost) + words
+
+
+def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
+    legends = _legends(cells)
+    parts = ["\n".join(f"% {text}" for text in (scenario.common.title, *legends))]
+    for sheet in sheets(scenario, cells):
+        head, *rows = (
+            " & ".join(_escaped(text) for text in line) + r" \\"
+            for line in (sheet.heads, *sheet.rows)
+        )
+        parts.append(
+            "\\begin{table}\n"
+            f"\\caption{{{_escaped(_caption(sheet, legends))}}}\n"
+            f"\\begin{{tabular}}{{{'l' * len(sheet.heads)}}}\n\\hline\n{head}\n\\hline\n"
+            + "\n".join(rows)
+            + "\n\\hline\n\\end{tabular}\n\\end{table}"
+        )
+    return "\n\n".join(parts) + "\n"
+
+
+def _caption(sheet: Sheet, legends: list[str]) -> str:
+    return ". ".join([f"Table {sheet.number}: {sheet.title}", *legends])
+
+
+def _escaped(text: str) -> str:
+    text = text.replace("\\", r"\textbackslash ")
+    for character in "&%$#_{}":
+        text = text.replace(character, "\\" + character)
+    return text.replace("^", r"\^{}").replace("~", r"\~{}").replace("<", "$<$").replace(">", "$>$")
+
+
+def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
+    console = Console(width=110)
+    with console.capture() as capture:
+        for sheet in sheets(scenario, cells):
+            title = escape(f"Table {sheet.number}: {sheet.title}")
+            console.print(f"\n[bold]{title}[/]", soft_wrap=True)
+            console.print(_fitting(sheet, console))
+        for text in _legends(cells):
+            console.print(f"{text}\n", style="dim", soft_wrap=True)
+    return capture.get()
+
+
+def _fitting(sheet: Sheet, console: Console) -> Table:
+    """Return the table; if it is too wide, with units below the names, then names in parts."""
+    unlimited = console.options.update_width(10**4)
+    below = [head.replace(" (", "\n(") for head in sheet.heads]
+    parts = [head.replace("_", "_\n") for head in below]
+    tables = [_rich_table(sheet._replace(heads=heads)) for heads in (sheet.heads, below, parts)]
+    widths = [console.measure(table, options=unlimited).maximum for table in tables]
+    return next((t for t, width in zip(tables, widths) if width <= console.width), tables[-1])
+
+
+def _rich_table(sheet: Sheet) -> Table:
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for head in sheet.heads:
+        side: Literal["left", "right"] = "left" if head in ("case", "source") else "right"
+        whole = head in ("case", "source")
+        table.add_column(escape(head), justify=side, overflow="fold", no_wrap=whole)
+    previous = ""
+    for row in sheet.rows:
+        shown = ["" if row[0] == previous and "source" in sheet.heads else row[0], *row[1:]]
+        previous = row[0]
+        table.add_row(*(_coloured(text) for text in shown))
+    return table
+
+
+def _coloured(text: str) -> str:
+    colour = _COLOURS.get(text.rpartition(" ")[2]) if " " in text else None
+    return f"[{colour}]{escape(text)}[/]" if colour else escape(text)
+
+
+FORMS: dict[str, Callable[[LoadedScenario, pd.DataFrame], str]] = {
+    "rich": _terminal,
+    "csv": _csv,
+    "md": _markdown,
+    "tex": _latex,
+    "json": _json,
+}
