@@ -22,6 +22,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "plot": show.plot,
     "validate": scenarios.validate,
     "schema": scenarios.schema,
+    "init": scenarios.init,
 }
 
 app = typer.Typer(

@@ -13,12 +13,13 @@ def load_all(configs: Sequence[Path], settings: Sequence[str] | None) -> list["L
     """Return all scenarios, or raise UserError with the problems of all of them at once."""
     from debrisest.errors import UserError
     from debrisest.scenario.load import load_scenario
+    from debrisest.shipped import scenario_path
     from debrisest.show.tables.published import published_values
 
     scenarios, problems = [], []
-    for path in configs:
+    for config in configs:
         try:
-            scenarios.append(load_scenario(path, settings or ()))
+            scenarios.append(load_scenario(scenario_path(config), settings or ()))
             published_values(scenarios[-1])
         except UserError as error:
             problems += error.problems

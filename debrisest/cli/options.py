@@ -17,7 +17,10 @@ class Format(StrEnum):
     JSON = "json"
 
 
-Configs = Annotated[list[Path], Argument(help="Scenario files (YAML).", metavar="CONFIG...")]
+Configs = Annotated[
+    list[Path],
+    Argument(help="Scenario files (YAML), or names of shipped ones.", metavar="CONFIG..."),
+]
 Out = Annotated[Path, Option("--out", help="Folder of results.")]
 Jobs = Annotated[int | None, Option("--jobs", min=1, help="Processes (default: all cores).")]
 Runs = Annotated[int | None, Option("--runs", min=1, help="Runs per case.")]

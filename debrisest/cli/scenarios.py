@@ -1,4 +1,9 @@
-"""The commands about scenario files: validate, schema."""
+"""The commands about scenario files: validate, schema, init."""
+
+from pathlib import Path
+from typing import Annotated
+
+from typer import Argument, Option
 
 from debrisest.cli.inputs import load_all
 from debrisest.cli.options import Configs, Settings
@@ -18,3 +23,18 @@ def schema() -> None:
     from debrisest.scenario.schema import ScenarioFile, scenario_model
 
     print(json.dumps(scenario_model(ScenarioFile).model_json_schema(), indent=1))
+
+
+def init(
+    name: Annotated[str | None, Argument(help="A shipped scenario.", metavar="[NAME]")] = None,
+    force: Annotated[bool, Option("--force", help="Replace files that are there.")] = False,
+) -> None:
+    """Write a scenario to start from, or a shipped one with its published values."""
+    from debrisest.shipped import STARTER, copy_shipped, shipped_names
+
+    written = copy_shipped(name or STARTER, Path(), force)
+    for path in written:
+        print(f"wrote {path}")
+    print(f"next: debrisest sweep {written[0]} --runs 5")
+    if name is None:
+        print(f"shipped scenarios (debrisest init NAME): {', '.join(shipped_names())}")
