@@ -9,17 +9,22 @@ if TYPE_CHECKING:
     from debrisest.scenario.load import LoadedScenario
 
 
-def load_all(configs: Sequence[Path], settings: Sequence[str] | None) -> list["LoadedScenario"]:
+def load_all(
+    configs: Sequence[Path], settings: Sequence[str] | None, plugins: Sequence[Path] | None
+) -> list["LoadedScenario"]:
     """Return all scenarios, or raise UserError with the problems of all of them at once."""
     from debrisest.errors import UserError
+    from debrisest.plugins.load import load_plugins, read_plugins
     from debrisest.scenario.load import load_scenario
     from debrisest.shipped import scenario_path
     from debrisest.show.tables.published import published_values
 
+    own_parts = read_plugins(plugins or ())
+    load_plugins(own_parts)
     scenarios, problems = [], []
     for config in configs:
         try:
-            scenarios.append(load_scenario(scenario_path(config), settings or ()))
+            scenarios.append(load_scenario(scenario_path(config), settings or (), own_parts))
             published_values(scenarios[-1])
         except UserError as error:
             problems += error.problems

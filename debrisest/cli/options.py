@@ -31,6 +31,10 @@ EstimatorNames = Annotated[
 Settings = Annotated[
     list[str] | None, Option("--set", help="key.path=value, laid on every case (repeatable).")
 ]
+Plugins = Annotated[
+    list[Path] | None,
+    Option("--plugin", metavar="FILE.py", help="Parts of your own (repeatable)."),
+]
 DryRun = Annotated[bool, Option("--dry-run", help="Tell what would run, and why.")]
 Force = Annotated[bool, Option("--force", help="Run even what is up to date.")]
 Cluster = Annotated[

@@ -6,22 +6,24 @@ from typing import Annotated
 from typer import Argument, Option
 
 from debrisest.cli.inputs import load_all
-from debrisest.cli.options import Configs, Settings
+from debrisest.cli.options import Configs, Plugins, Settings
 
 
-def validate(configs: Configs, settings: Settings = None) -> None:
+def validate(configs: Configs, settings: Settings = None, plugins: Plugins = None) -> None:
     """Check scenario files and tell every problem with its line."""
-    for scenario in load_all(configs, settings):
+    for scenario in load_all(configs, settings, plugins):
         estimators = ", ".join(scenario.common.estimators)
         print(f"{scenario.path}: {len(scenario.cases)} cases, estimators: {estimators}")
 
 
-def schema() -> None:
+def schema(plugins: Plugins = None) -> None:
     """Print the JSON schema of scenario files, for editors."""
     import json
 
+    from debrisest.plugins.load import load_plugins, read_plugins
     from debrisest.scenario.schema import ScenarioFile, scenario_model
 
+    load_plugins(read_plugins(plugins or ()))
     print(json.dumps(scenario_model(ScenarioFile).model_json_schema(), indent=1))
 
 

@@ -17,6 +17,7 @@ from debrisest.cli.options import (
     Form,
     Format,
     Out,
+    Plugins,
     Runs,
     Settings,
     Unprinted,
@@ -36,12 +37,13 @@ def table(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    plugins: Plugins = None,
     form: Form = Format.RICH,
     check: Check = False,
     quiet: Unprinted = False,
 ) -> None:
     """Write and print the tables of the results that are up to date."""
-    scenarios = load_all(configs, settings)
+    scenarios = load_all(configs, settings, plugins)
     selection = select(scenarios, runs, case, estimator)
     exit_if(show_tables(scenarios, out, selection, None if quiet else form, check))
 
@@ -53,12 +55,13 @@ def plot(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    plugins: Plugins = None,
     quiet: Unprinted = False,
 ) -> None:
     """Draw the figures of the results that are up to date, as PNG and SVG."""
     from debrisest.show.plots.draw import draw_all
 
-    scenarios = load_all(configs, settings)
+    scenarios = load_all(configs, settings, plugins)
     selection = select(scenarios, runs, case, estimator)
     for scenario in scenarios:
         if not set(scenario.cases) & set(selection.cases or scenario.cases):

@@ -20,6 +20,7 @@ from debrisest.cli.options import (
     Format,
     Jobs,
     Out,
+    Plugins,
     Quiet,
     Runs,
     Settings,
@@ -43,12 +44,13 @@ def _command(last_stage: str, help: str) -> Callable[..., None]:
         case: CaseNames = None,
         estimator: EstimatorNames = None,
         settings: Settings = None,
+        plugins: Plugins = None,
         dry_run: DryRun = False,
         force: Force = False,
         cluster: Cluster = None,
         quiet: Quiet = False,
     ) -> None:
-        scenarios = load_all(configs, settings)
+        scenarios = load_all(configs, settings, plugins)
         selection = select(scenarios, runs, case, estimator, last_stage, force)
         exit_if(_bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
 
@@ -69,6 +71,7 @@ def sweep(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    plugins: Plugins = None,
     dry_run: DryRun = False,
     force: Force = False,
     cluster: Cluster = None,
@@ -76,7 +79,7 @@ def sweep(
     check: Check = False,
 ) -> None:
     """Do everything for all cases, then write and print the tables."""
-    scenarios = load_all(configs, settings)
+    scenarios = load_all(configs, settings, plugins)
     selection = select(scenarios, runs, case, estimator, force=force)
     failed = _bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
     if not dry_run:
