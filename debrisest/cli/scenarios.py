@@ -20,11 +20,9 @@ def schema(plugins: Plugins = None) -> None:
     """Print the JSON schema of scenario files, for editors."""
     import json
 
-    from debrisest.plugins.load import load_plugins, read_plugins
-    from debrisest.scenario.schema import ScenarioFile, scenario_model
+    from debrisest import notebook
 
-    load_plugins(read_plugins(plugins or ()))
-    print(json.dumps(scenario_model(ScenarioFile).model_json_schema(), indent=1))
+    print(json.dumps(notebook.schema(plugins or ()), indent=1))
 
 
 def init(

@@ -28,6 +28,10 @@ def quantities_of(module: ModuleType) -> Mapping[str, Quantity]:
 
 def problems_in(module: ModuleType) -> Iterator[str]:
     """Yield why a module is no plug-in, each problem with its place."""
+    for name, kind in (("PARTS", list), ("QUANTITIES", dict)):
+        if not isinstance(getattr(module, name, kind()), kind):
+            yield f"{module.__file__}: {name} must be a {kind.__name__}"
+            return
     parts, quantities = parts_of(module), quantities_of(module)
     if not parts:
         yield (

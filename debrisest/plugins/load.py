@@ -23,9 +23,6 @@ from debrisest.vocabulary import VOCABULARY
 GROUP = "debrisest.parts"
 """Entry points of this group name modules that hold parts."""
 
-_loaded: dict[str, str] = {}
-"""Digest of the source of every file that was loaded, by its path."""
-
 
 class Plugin(NamedTuple):
     """A file with parts; its source travels to other processes with the cases that use it."""
@@ -44,6 +41,10 @@ class Plugin(NamedTuple):
         return f"plug-in {self.path}"
 
 
+_loaded: dict[str, Plugin] = {}
+"""Every file whose parts are in the catalog, by its path."""
+
+
 def read_plugins(paths: Iterable[Path]) -> tuple[Plugin, ...]:
     """Return the plug-ins in files, or raise UserError with every file that cannot be read."""
     found, problems = {}, []
@@ -57,18 +58,20 @@ def read_plugins(paths: Iterable[Path]) -> tuple[Plugin, ...]:
     return tuple(Plugin(path, source) for path, source in found.items())
 
 
-def load_plugins(plugins: Sequence[Plugin] = ()) -> None:
+def load_plugins(plugins: Sequence[Plugin] = ()) -> tuple[Plugin, ...]:
     """Put the parts of installed plug-ins and of these files in the catalog, where they are not.
 
-    A file whose source changed takes the place of what it was. Raises UserError with file and line
-    where a plug-in cannot be used; the catalog then has none of its parts.
+    Returns all files whose parts are there now. A file whose source changed takes the place of what
+    it was. Raises UserError with file and line where a plug-in cannot be used; the catalog then has
+    none of its parts.
     """
     _load_installed()
     for plugin in plugins:
-        if _loaded.get(plugin.path) != plugin.digest:
+        if _loaded.get(plugin.path) != plugin:
             _forget(plugin)
             _add(_executed(plugin), Path(plugin.path).name, plugin.digest)
-            _loaded[plugin.path] = plugin.digest
+            _loaded[plugin.path] = plugin
+    return tuple(_loaded.values())
 
 
 @cache

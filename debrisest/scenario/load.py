@@ -87,7 +87,7 @@ def load_scenario(
     path: Path, overrides: Sequence[str] = (), plugins: tuple[Plugin, ...] = ()
 ) -> LoadedScenario:
     """Return the cases of a scenario file, or raise UserError with every problem of it."""
-    load_plugins(plugins)
+    loaded = load_plugins(plugins)
     document, problems = parse(_read(path), str(path))
     if problems and not document.value:
         raise UserError(map(str, problems))
@@ -102,7 +102,7 @@ def load_scenario(
         problems += found
         if scenario is not None:
             problems += _placed(complete, scenario_problems(scenario, name))
-            cases[name] = Case(path.stem, name, complete.value, plugins)
+            cases[name] = Case(path.stem, name, complete.value, loaded)
     if not problems:
         scenarios = {name: case.scenario for name, case in cases.items()}
         problems = _placed(document, file_problems(scenarios))

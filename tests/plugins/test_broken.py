@@ -33,6 +33,8 @@ BROKEN = {
     ),
     "kind_of_two_names": (PART.replace('"mine"', '"a", "b"'), ":4: ", ["its own name"]),
     "no_part": ("PARTS = [5]\n", ": ", ["5", "not a subclass of a role"]),
+    "no_list": (PART + "\nPARTS = Mine\n", ": ", ["PARTS must be a list"]),
+    "no_mapping": (PART + "\nQUANTITIES = ['glare']\n", ": ", ["QUANTITIES must be a dict"]),
     "abstract": (PART.replace("simulate", "simulat"), ":4: ", ["Mine", "lacks simulate"]),
     "role": (
         PART.replace('    kind: L', '    role = "sensor"\n    kind: L'),
