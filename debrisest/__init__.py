@@ -1,3 +1,34 @@
-"""Batch experiments on estimating the motion of tumbling space debris from vision."""
+"""Batch experiments on estimating the motion of tumbling space debris from vision.
 
-__version__ = "0.1.0"
+The calls of a notebook are here; each is imported when it is first asked for.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from debrisest.errors import UserError
+    from debrisest.notebook import load, schema, sweep
+
+__version__ = version = "0.1.0"
+__all__ = ["UserError", "__version__", "load", "open_results", "schema", "sweep", "version"]
+
+_HOME = {
+    "UserError": "debrisest.errors",
+    "load": "debrisest.notebook",
+    "open_results": "debrisest.results.open",
+    "schema": "debrisest.notebook",
+    "sweep": "debrisest.notebook",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a call and return it."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'debrisest' has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    """Return the names that can be asked for."""
+    return sorted({*globals(), *_HOME})

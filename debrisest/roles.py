@@ -51,7 +51,11 @@ class Keys(BaseModel):
 class Part(Keys, ABC):
     """A part of a scenario, told apart by its ``kind``; ``version`` counts changes of results."""
 
+    role: ClassVar[str]
+    """Its place in the catalog."""
     version: ClassVar[int] = 1
+    plugin: ClassVar[dict[str, str]] = {}
+    """Name and digest of the plug-in that it comes from."""
     needs: ClassVar[tuple[str, ...]] = ()
     """Datasets that a part before this one must give."""
     gives: ClassVar[tuple[str, ...]] = ()
@@ -65,13 +69,14 @@ class Part(Keys, ABC):
         return self.needs
 
     def fingerprint(self) -> dict[str, Any]:
-        """Return what this part's results depend on: its keys and its version."""
-        return self.model_dump(mode="json") | {"version": self.version}
+        """Return what this part's results depend on: its keys, its version, its plug-in."""
+        return self.model_dump(mode="json") | {"version": self.version} | self.plugin
 
 
 class SimulationPart(Part):
     """Target, orbit, motion, observer or sensor: adds its datasets to what is there already."""
 
+    role = "sensors"
     frames: ClassVar[dict[str, str]] = {}
     """The axes and origin of datasets whose name does not tell them."""
     tried: ClassVar[bool] = False
@@ -89,6 +94,8 @@ class SimulationPart(Part):
 class RecoveryPart(Part):
     """Turns the measurements of single epochs into a signal over all epochs."""
 
+    role = "recovery"
+
     @abstractmethod
     def recover(self, data: Data, clock: Clock) -> Data:
         """Return the recovered signal and what the solver says of it."""
@@ -100,6 +107,8 @@ class RecoveryPart(Part):
 
 class StartPart(Part):
     """Says what is known before the first measurement, in physical quantities."""
+
+    role = "start"
 
     @abstractmethod
     def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:
@@ -147,6 +156,8 @@ class ProblemPart(Part):
     It gives the kind of model that a filter needs: ``model`` or ``replay_model``.
     """
 
+    role = "problem"
+
     @abstractmethod
     def measurements(self, data: Data) -> Array:
         """Return what the filter measures (run, time, component), NaN where nothing is."""
@@ -174,6 +185,8 @@ class ProblemPart(Part):
 
 class FilterPart(Part):
     """A filter algorithm and its settings; it needs the kind of model that a problem gives."""
+
+    role = "filter"
 
     @property
     def kept_s(self) -> list[float] | None:

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import debrisest
+
 
 def test_quiet_writes_the_tables_and_tells_what_is_unexpected(
     small: Path, swept: Path, reference: Path, cli: Callable
@@ -24,3 +26,17 @@ def test_quiet_draws_and_names_no_file(small: Path, swept: Path, cli: Callable) 
     done = cli("plot", small, *some)
     assert (done.exit_code, done.stdout, done.stderr) == (0, "", "")
     assert list((swept / "small" / "plots").glob("rates*.png"))
+
+
+def test_the_version(cli: Callable) -> None:
+    assert cli("--version").stdout == f"debrisest {debrisest.__version__}\n"
+
+
+def test_a_folder_where_tables_should_go_is_told_in_one_sentence(
+    small: Path, swept: Path, cli: Callable
+) -> None:
+    (swept / "small" / "tables.csv").unlink()
+    (swept / "small" / "tables.csv").mkdir()
+    done = cli("table", small, "--out", swept)
+    assert done.exit_code == 2
+    assert done.stderr == f"{swept / 'small' / 'tables.csv'}: Is a directory\n"

@@ -22,6 +22,7 @@ from debrisest.results import store
 from debrisest.run.plan import Step
 from debrisest.run.stages.isolate import isolate
 from debrisest.run.stages.pipeline import STAGES
+from debrisest.vocabulary import VOCABULARY
 
 
 class Outcome(NamedTuple):
@@ -125,10 +126,19 @@ def _submit(pool: Executor, step: Step) -> Future[None]:
 def run_step(step: Step) -> None:
     """Compute one step and write its file."""
     stage = STAGES[step.stage]
-    result = isolate(lambda data: stage.run(step.case, step.estimator, data), _read(step))
+    result = isolate(
+        lambda data: _declared(stage.run(step.case, step.estimator, data)), _read(step)
+    )
     times = step.case.scenario.clock.times
     frames = step.case.scenario.frames
     store.write(step.path, {"time_s": times, **result}, _attributes(step), frames)
+
+
+def _declared(data: Data) -> Data:
+    """Return the same, or raise ValueError for what the vocabulary lacks."""
+    if unknown := ", ".join(sorted(data.keys() - VOCABULARY.keys())):
+        raise ValueError(f"no quantity is called {unknown}; a plug-in declares its own QUANTITIES")
+    return data
 
 
 def failures_of(data: Data) -> dict[int, str]:
@@ -159,5 +169,6 @@ def _attributes(step: Step) -> dict[str, Any]:
         "stage_key": step.key,
         "inputs": json.dumps(step.inputs),
         "scenario": step.case.as_yaml(),
+        "plugins": json.dumps({plugin.path: plugin.digest for plugin in step.case.plugins}),
         "seed": step.case.scenario.seed,
     }

@@ -198,8 +198,13 @@ def _difference(before: dict[str, Any], now: dict[str, Any]) -> str:
         return "the order of its parts changed"
     if not changed:
         return "an earlier stage was computed anew"
-    told = [f"{key} was {was.get(key)}, is {now_is.get(key)}" for key in changed[:3]]
+    told = [_change(key, was.get(key), now_is.get(key)) for key in changed[:3]]
     return "; ".join(told) + ("; ..." if len(changed) > 3 else "")
+
+
+def _change(key: str, was: Any, now_is: Any) -> str:
+    part, plugin, name = key.partition(".plug-in ")
+    return f"{part}: plug-in {name} changed" if plugin else f"{key} was {was}, is {now_is}"
 
 
 def _flat(value: Any, prefix: str = "") -> dict[str, Any]:

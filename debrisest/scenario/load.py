@@ -12,6 +12,7 @@ import yaml
 from pydantic import ValidationError
 
 from debrisest.errors import UserError
+from debrisest.plugins.load import Plugin, load_plugins
 from debrisest.scenario.checks import file_problems, scenario_problems
 from debrisest.scenario.document import (
     Document,
@@ -42,10 +43,12 @@ class Case:
     scenario_name: str
     name: str
     document: dict[str, Any]
+    plugins: tuple[Plugin, ...] = ()
 
     @cached_property
     def scenario(self) -> Scenario:
         """Return the validated scenario of this case."""
+        load_plugins(self.plugins)
         scenario: Scenario = scenario_model().model_validate(self.document)
         return scenario
 
@@ -80,8 +83,11 @@ class LoadedScenario(NamedTuple):
         return next(iter(self.cases.values())).scenario
 
 
-def load_scenario(path: Path, overrides: Sequence[str] = ()) -> LoadedScenario:
+def load_scenario(
+    path: Path, overrides: Sequence[str] = (), plugins: tuple[Plugin, ...] = ()
+) -> LoadedScenario:
     """Return the cases of a scenario file, or raise UserError with every problem of it."""
+    loaded = load_plugins(plugins)
     document, problems = parse(_read(path), str(path))
     if problems and not document.value:
         raise UserError(map(str, problems))
@@ -96,7 +102,7 @@ def load_scenario(path: Path, overrides: Sequence[str] = ()) -> LoadedScenario:
         problems += found
         if scenario is not None:
             problems += _placed(complete, scenario_problems(scenario, name))
-            cases[name] = Case(path.stem, name, complete.value)
+            cases[name] = Case(path.stem, name, complete.value, loaded)
     if not problems:
         scenarios = {name: case.scenario for name, case in cases.items()}
         problems = _placed(document, file_problems(scenarios))

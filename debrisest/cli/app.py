@@ -1,0 +1,57 @@
+"""All commands by name."""
+
+import os
+from collections.abc import Callable
+from typing import Annotated
+
+import typer
+
+from debrisest import __version__
+from debrisest.cli import scenarios, show, stages
+from debrisest.cli.exits import Commands
+
+for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_variable, "1")
+
+COMMANDS: dict[str, Callable[..., None]] = {
+    "simulate": stages.simulate,
+    "recover": stages.recover,
+    "filter": stages.filter,
+    "sweep": stages.sweep,
+    "table": show.table,
+    "plot": show.plot,
+    "validate": scenarios.validate,
+    "schema": scenarios.schema,
+    "init": scenarios.init,
+}
+
+app = typer.Typer(
+    name="debrisest",
+    cls=Commands,
+    rich_markup_mode=None,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+for _name, _command in COMMANDS.items():
+    app.command(_name)(_command)
+
+
+def _tell_version(asked: bool) -> None:
+    if asked:
+        print(f"debrisest {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="The version.")
+    ] = False,
+) -> None:
+    """Batch experiments on estimating the motion of tumbling space debris from vision."""
+
+
+def main() -> None:
+    """Run the command line."""
+    app()

@@ -1,0 +1,44 @@
+"""How a command ends: 0 all well, 1 something is wrong, 2 wrong input, 130 interrupted."""
+
+import errno
+import sys
+from typing import Any
+
+from typer.core import TyperGroup
+
+from debrisest.errors import UserError
+
+
+class Commands(TyperGroup):
+    """The commands; whatever stops one is told in sentences, without a trace."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run a command."""
+        try:
+            return super().invoke(ctx)
+        except UserError as error:
+            _stop(2, *error.problems)
+        except OSError as error:
+            if error.errno == errno.EPIPE:
+                raise
+            _stop(2, _sentence(error))
+        except KeyboardInterrupt:
+            _stop(130, "interrupted: finished steps are kept, the same command goes on from there")
+
+
+def exit_if(wrong: bool) -> None:
+    """End with exit code 1 if something is wrong."""
+    if wrong:
+        raise SystemExit(1)
+
+
+def _sentence(error: OSError) -> str:
+    reason = error.strerror or str(error) or type(error).__name__
+    place = error.filename2 or error.filename
+    return f"{place}: {reason}" if place else reason
+
+
+def _stop(code: int, *sentences: str) -> None:
+    for sentence in sentences:
+        print(sentence, file=sys.stderr)
+    raise SystemExit(code) from None

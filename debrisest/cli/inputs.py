@@ -1,0 +1,55 @@
+"""From arguments and options to what the runner takes."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from debrisest.run.plan import Selection
+    from debrisest.scenario.load import LoadedScenario
+
+
+def load_all(
+    configs: Sequence[Path], settings: Sequence[str] | None, plugins: Sequence[Path] | None
+) -> list["LoadedScenario"]:
+    """Return all scenarios, or raise UserError with the problems of all of them at once."""
+    from debrisest.errors import UserError
+    from debrisest.plugins.load import load_plugins, read_plugins
+    from debrisest.scenario.load import load_scenario
+    from debrisest.shipped import scenario_path
+    from debrisest.show.tables.published import published_values
+
+    own_parts = read_plugins(plugins or ())
+    load_plugins(own_parts)
+    scenarios, problems = [], []
+    for config in configs:
+        try:
+            scenarios.append(load_scenario(scenario_path(config), settings or (), own_parts))
+            published_values(scenarios[-1])
+        except UserError as error:
+            problems += error.problems
+    stems = [path.stem for path in configs]
+    problems += [
+        f"{path}: another scenario is called {path.stem} too; results would be mixed"
+        for path in configs
+        if stems.count(path.stem) > 1
+    ]
+    if problems:
+        raise UserError(problems)
+    return scenarios
+
+
+def select(
+    scenarios: Sequence["LoadedScenario"],
+    runs: int | None,
+    cases: Sequence[str] | None,
+    estimators: Sequence[str] | None,
+    last_stage: str = "assess",
+    force: bool = False,
+) -> "Selection":
+    """Return what is asked for, or raise UserError where no scenario has it."""
+    from debrisest.run.plan import Selection, check_selection
+
+    selection = Selection(runs, cases or None, estimators or None, last_stage, force)
+    check_selection(scenarios, selection)
+    return selection

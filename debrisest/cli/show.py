@@ -1,0 +1,104 @@
+"""The commands that show results: table, plot."""
+
+import sys
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from debrisest.cli.exits import exit_if
+from debrisest.cli.inputs import load_all, select
+from debrisest.cli.options import (
+    RESULTS,
+    CaseNames,
+    Check,
+    Configs,
+    EstimatorNames,
+    Form,
+    Format,
+    Out,
+    Plugins,
+    Runs,
+    Settings,
+    Unprinted,
+)
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from debrisest.run.plan import Selection
+    from debrisest.scenario.load import LoadedScenario
+
+
+def table(
+    configs: Configs,
+    out: Out = RESULTS,
+    runs: Runs = None,
+    case: CaseNames = None,
+    estimator: EstimatorNames = None,
+    settings: Settings = None,
+    plugins: Plugins = None,
+    form: Form = Format.RICH,
+    check: Check = False,
+    quiet: Unprinted = False,
+) -> None:
+    """Write and print the tables of the results that are up to date."""
+    scenarios = load_all(configs, settings, plugins)
+    selection = select(scenarios, runs, case, estimator)
+    exit_if(show_tables(scenarios, out, selection, None if quiet else form, check))
+
+
+def plot(
+    configs: Configs,
+    out: Out = RESULTS,
+    runs: Runs = None,
+    case: CaseNames = None,
+    estimator: EstimatorNames = None,
+    settings: Settings = None,
+    plugins: Plugins = None,
+    quiet: Unprinted = False,
+) -> None:
+    """Draw the figures of the results that are up to date, as PNG and SVG."""
+    from debrisest.show.plots.draw import draw_all
+
+    scenarios = load_all(configs, settings, plugins)
+    selection = select(scenarios, runs, case, estimator)
+    for scenario in scenarios:
+        if not set(scenario.cases) & set(selection.cases or scenario.cases):
+            continue
+        for path in draw_all(scenario, out, selection):
+            if not quiet:
+                print(path)
+
+
+def show_tables(
+    scenarios: Sequence["LoadedScenario"],
+    out: Path,
+    selection: "Selection",
+    form: Format | None,
+    check: bool,
+) -> bool:
+    """Write all tables, print them in a format; return whether a verdict is not as expected."""
+    from debrisest.run.sweep import chosen, tabulate, write_tables
+    from debrisest.show.tables.cells import unexpected
+    from debrisest.show.tables.render import render_all
+
+    wrong: list[str] = []
+    shown: list[tuple[LoadedScenario, DataFrame]] = []
+    for scenario in scenarios:
+        rows, stale = tabulate(scenario, out, selection.runs)
+        means = scenario.common.tables.means
+        for step in stale[:1]:
+            more = f" (and {len(stale) - 1} more)" if len(stale) > 1 else ""
+            print(f"left out of the tables: {step.name}: {step.reason}{more}", file=sys.stderr)
+        if not rows.empty:
+            write_tables(scenario, out, rows)
+            shown.append((scenario, chosen(rows, selection, means)))
+        wrong += unexpected(scenario, rows, partial(selection.asks_for, means=means))
+    if shown and form is not None:
+        print(render_all(shown, form), end="")
+    if check:
+        for sentence in wrong:
+            print(sentence, file=sys.stderr)
+        print(f"{len(wrong)} verdicts differ from the expected ones", file=sys.stderr)
+    return check and bool(wrong)

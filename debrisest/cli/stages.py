@@ -1,0 +1,116 @@
+"""The commands that bring results up to date: simulate, recover, filter, sweep."""
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from debrisest.cli.exits import exit_if
+from debrisest.cli.inputs import load_all, select
+from debrisest.cli.options import (
+    RESULTS,
+    CaseNames,
+    Check,
+    Cluster,
+    Configs,
+    DryRun,
+    EstimatorNames,
+    Force,
+    Format,
+    Jobs,
+    Out,
+    Plugins,
+    Quiet,
+    Runs,
+    Settings,
+)
+from debrisest.cli.show import show_tables
+
+if TYPE_CHECKING:
+    from debrisest.run.plan import Selection
+    from debrisest.run.sweep import Machine
+    from debrisest.scenario.load import LoadedScenario
+
+
+def _command(last_stage: str, help: str) -> Callable[..., None]:
+    """Return the command that brings one stage, and what it needs before it, up to date."""
+
+    def command(
+        configs: Configs,
+        out: Out = RESULTS,
+        jobs: Jobs = None,
+        runs: Runs = None,
+        case: CaseNames = None,
+        estimator: EstimatorNames = None,
+        settings: Settings = None,
+        plugins: Plugins = None,
+        dry_run: DryRun = False,
+        force: Force = False,
+        cluster: Cluster = None,
+        quiet: Quiet = False,
+    ) -> None:
+        scenarios = load_all(configs, settings, plugins)
+        selection = select(scenarios, runs, case, estimator, last_stage, force)
+        exit_if(_bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
+
+    command.__doc__ = help
+    return command
+
+
+simulate = _command("simulate", "Simulate truth and measurements.")
+recover = _command("recover", "Recover attitude signals, simulating first where needed.")
+filter = _command("assess", "Run the filters and assess them, doing what they need first.")
+
+
+def sweep(
+    configs: Configs,
+    out: Out = RESULTS,
+    jobs: Jobs = None,
+    runs: Runs = None,
+    case: CaseNames = None,
+    estimator: EstimatorNames = None,
+    settings: Settings = None,
+    plugins: Plugins = None,
+    dry_run: DryRun = False,
+    force: Force = False,
+    cluster: Cluster = None,
+    quiet: Quiet = False,
+    check: Check = False,
+) -> None:
+    """Do everything for all cases, then write and print the tables."""
+    scenarios = load_all(configs, settings, plugins)
+    selection = select(scenarios, runs, case, estimator, force=force)
+    failed = _bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
+    if not dry_run:
+        exit_if(show_tables(scenarios, out, selection, Format.RICH, check) or failed)
+
+
+def _machine(jobs: int | None, cluster: str | None, quiet: bool) -> "Machine":
+    from debrisest.run.sweep import Machine
+
+    return Machine(jobs or os.cpu_count() or 1, cluster, quiet)
+
+
+def _bring(
+    scenarios: Sequence["LoadedScenario"],
+    out: Path,
+    selection: "Selection",
+    machine: "Machine",
+    dry_run: bool,
+) -> bool:
+    """Run what has a reason to, or tell it; return whether a run gave no result."""
+    from debrisest.run.plan import plan
+    from debrisest.run.sweep import bring_up_to_date
+
+    if dry_run:
+        steps = [step for scenario in scenarios for step in plan(scenario, out, selection)]
+        due = [step for step in steps if step.reason]
+        for step in due:
+            print(f"{step.name}: {step.reason}")
+        print(f"{len(due)} of {len(steps)} steps would run")
+        return False
+    failures = bring_up_to_date(scenarios, out, selection, machine)
+    for name, why in failures.items():
+        print(f"{name} failed: {why}", file=sys.stderr)
+    return bool(failures)

@@ -1,0 +1,85 @@
+"""The calls of a notebook: the guide's blocks, in order, and the same tables as the command's."""
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import debrisest
+
+GUIDE = (Path(__file__).parent.parent / "docs" / "python.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```python\n(.*?)^```", GUIDE, re.M | re.S)
+
+
+def test_the_guide(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    names: dict = {}
+    for block in BLOCKS:
+        exec(compile(block, "docs/python.md", "exec"), names)
+    assert names["scenario"].common.motion.rate_deg_s == [2, 1, 3]
+    assert set(names["rows"]["case"]) == {"noise_m=0.01", "noise_m=0.03"}
+    told = capsys.readouterr().out
+    assert told.startswith("--set run=2: run: unknown key; allowed: ")
+    assert "(did you mean runs?)" in told
+
+
+def test_the_tables_are_those_of_the_command(small: Path, tmp_path: Path, reference: Path) -> None:
+    rows = debrisest.sweep(small, tmp_path / "out", estimators=["wahba"])
+    assert set(rows["estimator"]) == {"wahba"}
+    debrisest.sweep(debrisest.load(small), tmp_path / "out")
+    ours, theirs = (out / "small" / "tables.csv" for out in (tmp_path / "out", reference))
+    assert ours.read_bytes() == theirs.read_bytes()
+
+
+def test_settings_are_python_values(small: Path) -> None:
+    changed = debrisest.load(small, title="Ü: {a}", **{"motion.rate_deg_s": np.array([1e-7, 2, 3])})
+    assert changed.common.title == "Ü: {a}"
+    assert changed.common.motion.rate_deg_s == [1e-7, 2, 3]
+
+
+def test_a_name_that_nothing_has(tmp_path: Path, small: Path) -> None:
+    with pytest.raises(debrisest.UserError, match="did you mean first_steps"):
+        debrisest.load("first_step")
+    with pytest.raises(debrisest.UserError, match="did you mean wahba"):
+        debrisest.sweep(small, tmp_path, estimators=["wabha"])
+    with pytest.raises(AttributeError, match="no attribute 'swep'"):
+        _ = debrisest.swep
+
+
+def test_the_package_is_light() -> None:
+    heavy = "numpy", "pydantic", "yaml", "typer"
+    code = f"import sys, debrisest; print([name for name in {heavy} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+def test_what_the_package_lists_is_there(cli: Callable) -> None:
+    assert set(debrisest.__all__) <= set(dir(debrisest))
+    assert debrisest.version == debrisest.__version__
+    assert debrisest.schema()["title"] == "ScenarioFile"
+
+
+def test_plug_ins_stay_for_the_session(small: Path, tmp_path: Path) -> None:
+    """In a process of its own, since the catalog of this one is that of all tests."""
+    plugin = Path(__file__).parent / "plugins" / "cautious.py"
+    text = small.read_text().replace("{kind: unscented", "{kind: cautious, factor: 2")
+    small.write_text(text)
+    code = (
+        "import debrisest\n"
+        "if __name__ == '__main__':\n"
+        f"    debrisest.load({str(small)!r}, plugins=[{str(plugin)!r}])\n"
+        f"    scenario = debrisest.load({str(small)!r})\n"
+        "    rows = debrisest.sweep(scenario, runs=1, cases=['slow'], jobs=2)\n"
+        "    print(rows['failed'].sum(), len(rows) > 0)\n"
+    )
+    (script := tmp_path / "script.py").write_text(code)
+    done = subprocess.run(
+        [sys.executable, script], capture_output=True, text=True, cwd=tmp_path, check=False
+    )
+    assert (done.returncode, done.stdout) == (0, "0 True\n"), done.stderr
