@@ -1,0 +1,185 @@
+"""From rows of measurements to tracks, with everything checked that rows can tell."""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from debrisest.arrays import Array, IntArray
+from debrisest.tracks.epochs import Epochs, group_times, scatter
+from debrisest.tracks.report import Report
+from debrisest.tracks.types import Tracks
+
+POINT = ("x_m", "y_m", "z_m")
+SIGMA = ("sigma_x_m", "sigma_y_m", "sigma_z_m")
+PIXEL = ("u_px", "v_px")
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Measurements, a row each: of a feature (-1 = the target as a whole), by a camera (-1 = none).
+
+    ``point`` and ``sigma (row, 3)``, ``pixel (row, 2)`` and ``range (row, 1)`` are NaN where not
+    observed, and None where the file has no such column.
+    """
+
+    source: str
+    time: Array
+    feature: IntArray
+    camera: IntArray
+    lines: IntArray
+    features: tuple[str, ...]
+    cameras: tuple[str, ...]
+    point: Array | None
+    sigma: Array | None
+    pixel: Array | None
+    range: Array | None
+
+
+def codes(names: list[str]) -> tuple[IntArray, tuple[str, ...]]:
+    """Return the code of each name, -1 for none, and the names in natural order (p2, p10)."""
+    found, labels = pd.factorize(np.array([name or None for name in names], dtype=object))
+    order = sorted(range(len(labels)), key=lambda index: _natural(str(labels[index])))
+    rank = np.full(len(labels) + 1, -1)
+    rank[order] = np.arange(len(labels))
+    return rank[found], tuple(str(labels[index]) for index in order)
+
+
+def assemble(rows: Rows, notes: tuple[str, ...] = ()) -> Tracks:
+    """Tracks of rows in any order.
+
+    Raises `UserError`, with lines: contradicting rows, incomplete points or pixels, sigmas that are
+    missing or not positive, zeros written for what was not seen, times that no features share.
+    """
+    report = Report(rows.source)
+    _check_rows(rows, report)
+    report.check()
+    epochs = group_times(rows.time, rows.lines)
+    shape = (len(epochs.times), len(rows.features))
+    place = np.where(rows.feature >= 0, epochs.of_row * shape[1] + rows.feature, -1)
+    size = shape[0] * shape[1]
+
+    def placed(values: Array | None, column: str) -> Array | None:
+        if values is None:
+            return None
+        return scatter(place, values, size, rows.lines, report, column).reshape(*shape, -1)
+
+    tracks = Tracks(
+        rows.source, epochs.times, rows.features, epochs.lines,
+        placed(rows.point, POINT[0]), placed(rows.sigma, "sigma_m"),
+        rows.cameras, _pixels(rows, epochs, report), _ranges(rows, epochs, place, report),
+        notes + epochs.notes + _duplicates(rows, place) + _told(rows),
+    )  # fmt: skip
+    _check_shared(tracks, report)
+    report.check()
+    return tracks
+
+
+def _check_rows(rows: Rows, report: Report) -> None:
+    for values, names, absent in ((rows.point, POINT, (0.0,)), (rows.pixel, PIXEL, (0.0, -1.0))):
+        if values is None:
+            continue
+        missing = np.isnan(values)
+        part = missing.any(-1) & ~missing.all(-1)
+        every = ", ".join(names)
+        report.where(part, rows.lines, f"give all of {every}, or none")
+        for value in absent:
+            message = f"{every} are all {value:g}, often written for not seen; leave them empty"
+            report.where((values == value).all(-1), rows.lines, message)
+    if rows.sigma is not None and rows.point is not None:
+        wrong = ~np.isnan(rows.point).any(-1) & ~(rows.sigma > 0).all(-1)
+        report.where(wrong, rows.lines, "must be given and positive", "sigma_m")
+    if rows.range is not None:
+        wrong = rows.range[:, 0] <= 0
+        report.where(wrong, rows.lines, "must be positive; empty = not seen", "range_m")
+    if rows.pixel is not None:
+        wrong = ~np.isnan(rows.pixel[:, 0]) & (rows.camera < 0)
+        report.where(wrong, rows.lines, "of which camera is this pixel?", "camera")
+    _check_whole(rows, report)
+
+
+def _check_whole(rows: Rows, report: Report) -> None:
+    """Rows without a feature may hold a range only."""
+    others = [v for v in (rows.point, rows.pixel) if v is not None]
+    held = np.any([~np.isnan(values).all(-1) for values in others], axis=0)
+    if rows.range is None:
+        held = np.ones(len(rows.lines), bool)
+    wrong = (rows.feature < 0) & held
+    report.where(wrong, rows.lines, "empty; only a range can do without", "feature")
+
+
+def _pixels(rows: Rows, epochs: Epochs, report: Report) -> Array | None:
+    if rows.pixel is None:
+        return None
+    shape = (len(epochs.times), len(rows.cameras), len(rows.features))
+    place = (epochs.of_row * shape[1] + rows.camera) * shape[2] + rows.feature
+    place = np.where((rows.camera >= 0) & (rows.feature >= 0), place, -1)
+    size = int(np.prod(shape))
+    return scatter(place, rows.pixel, size, rows.lines, report, PIXEL[0]).reshape(*shape, 2)
+
+
+def _ranges(rows: Rows, epochs: Epochs, place: IntArray, report: Report) -> Array | None:
+    """Ranges to the target as a whole (no feature, or the same for all of them) or by feature."""
+    if rows.range is None:
+        return None
+    shape = (len(epochs.times), len(rows.features))
+    seen, whole = ~np.isnan(rows.range[:, 0]), rows.feature < 0
+    if (seen & whole).any():
+        message = "of a feature, while other rows have ranges of the target as a whole"
+        report.where(seen & ~whole, rows.lines, message, "range_m")
+        index = np.where(whole, epochs.of_row, -1)
+        return scatter(index, rows.range, shape[0], rows.lines, report, "range_m")[:, 0]
+    ranges = scatter(place, rows.range, shape[0] * shape[1], rows.lines, report, "range_m")
+    ranges = ranges.reshape(shape)
+    known = ~np.isnan(ranges)
+    least = np.min(ranges, axis=1, where=known, initial=np.inf)
+    most = np.max(ranges, axis=1, where=known, initial=-np.inf)
+    if (known.sum(1) > 1).any() and (least >= most).all():
+        return np.where(np.isfinite(least), least, np.nan)
+    return ranges
+
+
+def _duplicates(rows: Rows, place: IntArray) -> tuple[str, ...]:
+    """Rows that say again what another one says (contradictions are refused elsewhere)."""
+    parts = [v for v in (rows.point, rows.sigma, rows.pixel, rows.range) if v is not None]
+    keys = np.column_stack([rows.time, rows.feature, rows.camera, *parts])
+    again = pd.DataFrame(keys).duplicated().to_numpy()
+    if not again.any():
+        return ()
+    first = rows.lines[np.flatnonzero(again)[0]]
+    return (f"{int(again.sum())} rows repeat another one and are left out, first line {first}",)
+
+
+def _told(rows: Rows) -> tuple[str, ...]:
+    notes = []
+    if len(rows.features) < 3 and rows.point is not None:
+        notes.append(f"{len(rows.features)} features only: an attitude needs three, not in line")
+    folded: dict[str, str] = {}
+    for name in rows.features:
+        if (other := folded.setdefault(name.casefold(), name)) != name:
+            notes.append(f"features {other} and {name} differ in case only: are they the same?")
+    once = np.bincount(rows.feature[rows.feature >= 0], minlength=len(rows.features)) == 1
+    if once.any() and len(rows.lines) > len(rows.features):
+        names = [name for name, single in zip(rows.features, once) if single]
+        notes.append(f"seen in one row only: {', '.join(names[:10])}; are the names right?")
+    if rows.sigma is not None and np.nanmin(rows.sigma) == np.nanmax(rows.sigma):
+        notes.append(f"sigma is {np.nanmax(rows.sigma):g} m for all points")
+    return tuple(notes)
+
+
+def _check_shared(tracks: Tracks, report: Report) -> None:
+    """Features of a rigid body are seen together; a column in the place of time shows here."""
+    seen = np.zeros((len(tracks.times), len(tracks.features)), bool)
+    if tracks.points is not None:
+        seen |= ~np.isnan(tracks.points[..., 0])
+    if tracks.pixels is not None:
+        seen |= ~np.isnan(tracks.pixels[..., 0]).all(1)
+    if len(tracks.features) > 1 and seen.any() and seen.sum(1).max() == 1:
+        message = "no two features share a time; is another column in its place?"
+        report.add(int(tracks.lines[0]), message, "time_s")
+
+
+def _natural(name: str) -> list[tuple[int, int, str]]:
+    parts = re.split(r"([0-9]{1,15})", name)
+    return [(0, int(part), part) if part.isdecimal() else (1, 0, part) for part in parts]

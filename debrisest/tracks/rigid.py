@@ -1,0 +1,173 @@
+"""Whether tracked points are one rigid body, and what would make them one.
+
+Distances between features of a rigid body do not change. Which features break this, and whether a
+mended axis or another unit repairs it, is told in sentences; nothing is changed. Two columns that
+are swapped in a whole file, or one whose sign is, leave a mirrored body that is as rigid: only a
+known geometry can tell.
+"""
+
+from collections.abc import Iterator
+from itertools import permutations
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.tracks.assemble import POINT
+from debrisest.tracks.types import BodyPoints, Tracks
+
+_MOST = 2_000_000  # distances looked at; more epochs are thinned out
+_FAR = 6.0  # times the usual spread: a feature that is not rigid with the rest
+_SOFT = 0.1  # of the body's size: a spread that no noise of use has
+_MIRRORED = 100.0  # ratio of squared residuals of the best rotation and the best reflection
+
+
+def check_rigid(tracks: Tracks, body: BodyPoints | None = None) -> list[str]:
+    """Sentences on what is not rigid or is mirrored in tracked points, empty if all is well.
+
+    ``body`` is the known geometry, if there is one: names and lengths are compared with it too.
+    """
+    if tracks.points is None or len(tracks.times) < 2 or len(tracks.features) < 3:
+        return []
+    step = 1 + tracks.points[..., 0].size * len(tracks.features) // _MOST
+    points = tracks.points[::step]
+    told = _loose(tracks, points, tracks.lines[::step]) + _reflections(tracks)
+    return told + (_geometry(tracks, points, body) if body is not None else [])
+
+
+def _deviations(points: Array) -> Array:
+    """How far each distance is from its median over time, ``(epoch, feature, feature)``, or NaN."""
+    distance = np.linalg.norm(points[:, :, None] - points[:, None], axis=-1)
+    distance[:, np.eye(points.shape[1], dtype=bool)] = np.nan
+    return np.asarray(np.abs(distance - _median(distance, 0)))
+
+
+def _median(values: Array, axis: int) -> Array:
+    """Median without NaN; NaN where there is nothing else."""
+    empty = np.isnan(values).all(axis, keepdims=True)
+    median = np.nanmedian(np.where(empty, 0.0, values), axis=axis, keepdims=True)
+    return np.where(empty, np.nan, median).squeeze(axis)
+
+
+def _typical(points: Array) -> tuple[Array, float]:
+    """Median deviation of each feature's distances ``(feature,)``, and of all; 0 where unknown."""
+    pairs = _median(_deviations(points), 0)
+    usual = _median(pairs.ravel(), 0)
+    return np.nan_to_num(_median(pairs, 1)), float(np.nan_to_num(usual))
+
+
+def _loose(tracks: Tracks, points: Array, lines: IntArray) -> list[str]:
+    """Features, or the epochs of features, that are not rigid with the rest."""
+    (each, usual), size = _typical(points), _size(points)
+    if usual > _SOFT * size:
+        said = f"distances between features vary by {usual:.3g} m, of a body of {size:.3g} m"
+        return [f"{tracks.source}: {said}: this is not one rigid body{_column(points)}"]
+    limit, told = _FAR * max(usual, 1e-9 * size), []
+    for index in np.flatnonzero(each > limit).tolist():
+        said = f"{tracks.features[index]} is not rigid with the rest: its distances vary by"
+        rest = f"{each[index]:.3g} m, those of others by {usual:.3g} m{_axes(points, index, limit)}"
+        told.append(f"{tracks.source}: {said} {rest}")
+    off = _median(_deviations(points), 2)
+    for index in np.flatnonzero((off > 3 * limit).any(0) & (each <= limit)).tolist():
+        epochs = np.flatnonzero(off[:, index] > 3 * limit)
+        said = f"{tracks.features[index]} is off the rest by {off[epochs, index].max():.3g} m here"
+        more = f" and in {epochs.size - 1} further epochs" if epochs.size > 1 else ""
+        told.append(f"{tracks.source}:{lines[epochs[0]]}: {said}{more}")
+    return told
+
+
+def _size(points: Array) -> float:
+    """Typical distance of features from their mean."""
+    seen = ~np.isnan(points)
+    mean = np.sum(points, axis=1, where=seen) / np.maximum(seen.sum(1), 1)
+    distance = np.linalg.norm(points - mean[:, None], axis=-1)
+    return float(np.median(distance[~np.isnan(distance)])) if seen.any() else 0.0
+
+
+def _column(points: Array) -> str:
+    """Which column in another unit would make the whole rigid."""
+    for axis, name in enumerate(POINT):
+        for factor in (1e-3, 1e3):
+            scaled = points * np.where(np.arange(3) == axis, factor, 1.0)
+            if _typical(scaled)[1] < 0.1 * _SOFT * _size(scaled):
+                return f"; with {name} times {factor:g} it would be: is its unit right?"
+    return "; is a column another quantity, or do features exchange their names?"
+
+
+def _axes(points: Array, index: int, limit: float) -> str:
+    """Which exchange or sign of axes of one feature would make it rigid with the rest."""
+    for words, mended in _exchanges(points[:, index]):
+        trial = points.copy()
+        trial[:, index] = mended
+        if _typical(trial)[0][index] < limit:
+            return f"; with {words} it would be: mend these rows"
+    return ""
+
+
+def _exchanges(values: Array) -> Iterator[tuple[str, Array]]:
+    for order in list(permutations(range(3)))[1:]:
+        yield f"its columns in the order {', '.join(POINT[i] for i in order)}", values[:, order]
+    for axis, name in enumerate(POINT):
+        yield f"the sign of its {name} changed", values * np.where(np.arange(3) == axis, -1.0, 1.0)
+
+
+def _reflections(tracks: Tracks) -> list[str]:
+    """Neighbouring epochs that match by a mirror image only."""
+    assert tracks.points is not None
+    mirrored = _is_mirrored(tracks.points[:-1], tracks.points[1:])
+    found = np.flatnonzero(mirrored)
+    if not found.size:
+        return []
+    lines = tracks.lines[found[0]], tracks.lines[found[0] + 1]
+    said = f"{found.size} neighbouring epochs match as mirror images only, first lines"
+    hint = "is an axis' sign changed, or are two columns swapped, in a part of the file?"
+    return [f"{tracks.source}: {said} {lines[0]} and {lines[1]}; {hint}"]
+
+
+def _is_mirrored(first: Array, second: Array) -> Array:
+    """Whether points ``(..., feature, 3)`` match others far better by a reflection.
+
+    From the singular values s of the correlation: the residual of the best orthogonal matrix is
+    ``|a|^2 + |b|^2 - 2 sum s``, that of the best rotation larger by ``4 s_3`` if they differ. Flat
+    bodies, ``s_3 = 0``, are their own mirror image.
+    """
+    seen = np.asarray(~np.isnan(first + second).any(-1, keepdims=True))
+    count = np.asarray(seen.sum(-2, keepdims=True))
+    a, b = (_centred(points, seen, count) for points in (first, second))
+    left, scale, right = np.linalg.svd(np.swapaxes(a, -1, -2) @ b)
+    improper = np.linalg.det(left) * np.linalg.det(right) < 0
+    total = np.sum(a * a, axis=(-2, -1)) + np.sum(b * b, axis=(-2, -1))
+    residual = np.maximum(total - 2 * scale.sum(-1), 1e-14 * total)
+    solid = (count[..., 0, 0] >= 4) & (scale[..., 2] > 1e-3 * scale[..., 0])
+    return np.asarray(improper & solid & (4 * scale[..., 2] > _MIRRORED * residual))
+
+
+def _centred(points: Array, seen: BoolArray, count: IntArray) -> Array:
+    mean = np.sum(points, axis=-2, keepdims=True, where=seen) / np.maximum(count, 1)
+    return np.where(seen, points - mean, 0.0)
+
+
+def _geometry(tracks: Tracks, points: Array, body: BodyPoints) -> list[str]:
+    """What differs from the known geometry: names, scale, handedness."""
+    unknown = [name for name in tracks.features if name not in body.features]
+    told = []
+    if unknown:
+        known = ", ".join(body.features[:20])
+        told.append(
+            f"{tracks.source}: {', '.join(unknown)} not in {body.source}, which has {known}"
+        )
+    shared = [name for name in tracks.features if name in body.features]
+    if len(shared) < 3:
+        return told
+    seen = points[:, [tracks.features.index(name) for name in shared]]
+    model = body.points[[body.features.index(name) for name in shared]]
+    if _is_mirrored(np.broadcast_to(model, seen.shape), seen).mean() > 0.5:
+        hint = "is an axis' sign changed, or are two columns swapped?"
+        told.append(f"{tracks.source}: points match {body.source} as a mirror image only; {hint}")
+    distance = np.linalg.norm(seen[:, :, None] - seen[:, None], axis=-1)
+    known_distance = np.linalg.norm(model[:, None] - model[None], axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = distance / known_distance
+    if (held := ratio[np.isfinite(ratio)]).size and not 0.8 < np.median(held) < 1.25:
+        said = f"lengths are {np.median(held):.3g} times those of {body.source}"
+        told.append(f"{tracks.source}: {said}; is the unit of one of them another one?")
+    return told
