@@ -1,7 +1,7 @@
 """From rows of measurements to tracks, with everything checked that rows can tell."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -71,9 +71,9 @@ def assemble(rows: Rows, notes: tuple[str, ...] = ()) -> Tracks:
         rows.cameras, _pixels(rows, epochs, report), _ranges(rows, epochs, place, report),
         notes + epochs.notes + _duplicates(rows, place) + _told(rows),
     )  # fmt: skip
-    _check_shared(tracks, report)
+    alone = _alone(tracks, report)
     report.check()
-    return tracks
+    return replace(tracks, notes=tracks.notes + alone)
 
 
 def _check_rows(rows: Rows, report: Report) -> None:
@@ -168,16 +168,21 @@ def _told(rows: Rows) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _check_shared(tracks: Tracks, report: Report) -> None:
+def _alone(tracks: Tracks, report: Report) -> tuple[str, ...]:
     """Features of a rigid body are seen together; a column in the place of time shows here."""
     seen = np.zeros((len(tracks.times), len(tracks.features)), bool)
     if tracks.points is not None:
         seen |= ~np.isnan(tracks.points[..., 0])
     if tracks.pixels is not None:
         seen |= ~np.isnan(tracks.pixels[..., 0]).all(1)
-    if len(tracks.features) > 1 and seen.any() and seen.sum(1).max() == 1:
+    alone = np.flatnonzero(seen.sum(1) == 1)
+    if len(tracks.features) == 1 or not alone.size:
+        return ()
+    if seen.sum(1).max() == 1:
         message = "no two features share a time; is another column in its place?"
         report.add(int(tracks.lines[0]), message, "time_s")
+    line = tracks.lines[alone[0]]
+    return (f"{alone.size} epochs show one feature only, first in line {line}; is its time right?",)
 
 
 def _natural(name: str) -> list[tuple[int, int, str]]:
