@@ -7,7 +7,8 @@ from debrisest.errors import UserError
 from debrisest.tracks.columns import Layout
 from debrisest.tracks.poses import poses_of
 from debrisest.tracks.quaternions import NAMES
-from debrisest.tracks.table import Sheet, read_table
+from debrisest.tracks.sheet import Sheet
+from debrisest.tracks.table import read_table
 from debrisest.tracks.types import Poses
 
 LAYOUT = Layout(("time_s", *NAMES))

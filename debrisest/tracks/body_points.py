@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from debrisest.tracks.assemble import POINT
 from debrisest.tracks.columns import Layout
 from debrisest.tracks.report import Report
-from debrisest.tracks.table import Sheet, read_table
+from debrisest.tracks.rows import POINT
+from debrisest.tracks.sheet import Sheet
+from debrisest.tracks.table import read_table
 from debrisest.tracks.types import BodyPoints
 
 LAYOUT = Layout(("feature", *POINT), texts=frozenset(("feature",)))

@@ -11,11 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from debrisest.arrays import Array
 from debrisest.errors import UserError
-from debrisest.tracks.text import read_text
+from debrisest.tracks.opencv_yaml import load_mapping
 from debrisest.tracks.types import Camera, Rig
 
 _MATRIX = ("camera_matrix", "cameraMatrix", "K", "M1", "K1", "cameraMatrix1", "camera_matrix_left")
@@ -27,33 +26,6 @@ _PLAIN = ("fx_px", "fy_px", "cx_px", "cy_px", "distortion", "baseline_m", "width
 _LONGEST = 10.0  # m: a longer base in OpenCV's file is one in millimetres
 
 
-class _Loader(yaml.SafeLoader):
-    """YAML with OpenCV's matrices, in which a key is there once."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """Return a mapping; a key that is there twice is an error at its second place."""
-        seen = set()
-        for key, _ in node.value:
-            if key.value in seen:
-                problem = f"key {key.value} is there twice; keep one"
-                raise yaml.MarkedYAMLError(problem=problem, problem_mark=key.start_mark)
-            seen.add(key.value)
-        return super().construct_mapping(node, deep)
-
-
-def _matrix(loader: yaml.SafeLoader, node: Any) -> Any:
-    held = loader.construct_mapping(node, deep=True)
-    try:
-        shape = (int(held["rows"]), int(held["cols"]))
-        return np.array(held["data"], dtype=float).reshape(shape)
-    except (KeyError, TypeError, ValueError):
-        message = "a matrix needs rows, cols and as many numbers in data"
-        raise yaml.MarkedYAMLError(problem=message, problem_mark=node.start_mark) from None
-
-
-_Loader.add_constructor("tag:yaml.org,2002:opencv-matrix", _matrix)
-
-
 def read_calibration(*paths: Path) -> Rig:
     """Cameras of one or several calibration files.
 
@@ -62,7 +34,7 @@ def read_calibration(*paths: Path) -> Rig:
     """
     held: dict[str, Any] = {}
     for path in paths:
-        held |= _mapping(path)
+        held |= load_mapping(path)
     source = ", ".join(str(path) for path in paths)
     if any(key in held for key in ("fx_px", "fy_px", "cx_px", "cy_px")):
         return _plain(held, source)
@@ -70,23 +42,6 @@ def read_calibration(*paths: Path) -> Rig:
         return _opencv(held, source)
     keys = f"{', '.join(_PLAIN[:4])} (plain keys) or {_MATRIX[0]}, K, M1 (OpenCV's)"
     raise UserError(f"{source}: no camera here; expected {keys}, found {', '.join(held)[:100]}")
-
-
-def _mapping(path: Path) -> dict[str, Any]:
-    text = read_text(path)
-    if text.startswith("%YAML:"):
-        text = "#" + text  # OpenCV's own form of the directive
-    try:
-        value = yaml.load(text, _Loader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark
-        place = f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else str(path)
-        raise UserError(f"{place}: not a calibration: {error.problem}") from None
-    except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise UserError(f"{path}: not a calibration: {str(error).splitlines()[0]}") from None
-    if not isinstance(value, dict):
-        raise UserError(f"{path}: expected keys such as {', '.join(_PLAIN[:4])}, or OpenCV's YAML")
-    return {str(key): item for key, item in value.items()}
 
 
 def _plain(held: dict[str, Any], source: str) -> Rig:

@@ -32,11 +32,13 @@ class Layout:
 
 def check_names(names: tuple[str, ...], line: int, layout: Layout, report: Report) -> None:
     """Report unknown, double and missing columns of a header; at once, since rows need them."""
-    for index, name in enumerate(names):
-        if name in names[:index]:
+    known, seen = layout.known, set[str]()
+    for name in names:
+        if name in seen:
             report.add(line, f"column {name!r} is there twice; which one is meant?")
-        elif name not in layout.known:
-            report.add(line, _unknown(name, layout.known))
+        elif name not in known:
+            report.add(line, _unknown(name, known))
+        seen.add(name)
     for name in layout.needed:
         if name not in names:
             report.add(line, f"column {name} is missing; the header has {', '.join(names)[:200]}")

@@ -8,7 +8,8 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.errors import UserError
 from debrisest.tracks.columns import Layout
-from debrisest.tracks.table import Sheet, read_table
+from debrisest.tracks.sheet import Sheet
+from debrisest.tracks.table import read_table
 
 Times = Mapping[str, float]
 """Time, s, of each image by name."""

@@ -3,10 +3,12 @@
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.tracks.assemble import PIXEL, POINT, SIGMA, Rows, assemble, codes
+from debrisest.tracks.assemble import assemble
 from debrisest.tracks.columns import Layout, check_names, together
 from debrisest.tracks.report import Report
-from debrisest.tracks.table import Sheet, read_table
+from debrisest.tracks.rows import PIXEL, POINT, SIGMA, Rows, codes
+from debrisest.tracks.sheet import Sheet
+from debrisest.tracks.table import read_table
 from debrisest.tracks.types import Tracks
 
 LAYOUT = Layout(

@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
-from debrisest.tracks.assemble import POINT
 from debrisest.tracks.columns import Layout, check_names, together
 from debrisest.tracks.epochs import group_times, scatter
 from debrisest.tracks.quaternions import NAMES, check_order, unit_quaternions
 from debrisest.tracks.report import Report
-from debrisest.tracks.table import Sheet, read_table
+from debrisest.tracks.rows import POINT
+from debrisest.tracks.sheet import Sheet
+from debrisest.tracks.table import read_table
 from debrisest.tracks.types import Poses
 
 LAYOUT = Layout(("time_s", *NAMES), (*POINT, "sigma_deg"))

@@ -4,9 +4,9 @@ from enum import Enum
 from pathlib import Path
 
 from debrisest.errors import UserError
-from debrisest.tracks.assemble import POINT
-from debrisest.tracks.colmap import FILES
-from debrisest.tracks.table import Sheet, open_sheet
+from debrisest.tracks.colmap_files import FILES
+from debrisest.tracks.rows import POINT
+from debrisest.tracks.sheet import Sheet, open_sheet
 from debrisest.tracks.text import read_text
 from debrisest.tracks.wide import is_wide
 

@@ -11,14 +11,15 @@ from itertools import permutations
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.tracks.assemble import POINT
+from debrisest.arrays import Array, IntArray
+from debrisest.tracks.geometry import compare_geometry
+from debrisest.tracks.mirror import reflections
+from debrisest.tracks.rows import POINT
 from debrisest.tracks.types import BodyPoints, Tracks
 
 _MOST = 2_000_000  # distances looked at; more epochs are thinned out
 _FAR = 6.0  # times the usual spread: a feature that is not rigid with the rest
 _SOFT = 0.1  # of the body's size: a spread that no noise of use has
-_MIRRORED = 100.0  # ratio of squared residuals of the best rotation and the best reflection
 
 
 def check_rigid(tracks: Tracks, body: BodyPoints | None = None) -> list[str]:
@@ -30,8 +31,8 @@ def check_rigid(tracks: Tracks, body: BodyPoints | None = None) -> list[str]:
         return []
     step = 1 + tracks.points[..., 0].size * len(tracks.features) // _MOST
     points = tracks.points[::step]
-    told = _loose(tracks, points, tracks.lines[::step]) + _reflections(tracks)
-    return told + (_geometry(tracks, points, body) if body is not None else [])
+    told = _loose(tracks, points, tracks.lines[::step]) + reflections(tracks)
+    return told + (compare_geometry(tracks, points, body) if body is not None else [])
 
 
 def _deviations(points: Array) -> Array:
@@ -108,66 +109,3 @@ def _exchanges(values: Array) -> Iterator[tuple[str, Array]]:
         yield f"its columns in the order {', '.join(POINT[i] for i in order)}", values[:, order]
     for axis, name in enumerate(POINT):
         yield f"the sign of its {name} changed", values * np.where(np.arange(3) == axis, -1.0, 1.0)
-
-
-def _reflections(tracks: Tracks) -> list[str]:
-    """Neighbouring epochs that match by a mirror image only."""
-    assert tracks.points is not None
-    mirrored = _is_mirrored(tracks.points[:-1], tracks.points[1:])
-    found = np.flatnonzero(mirrored)
-    if not found.size:
-        return []
-    lines = tracks.lines[found[0]], tracks.lines[found[0] + 1]
-    said = f"{found.size} neighbouring epochs match as mirror images only, first lines"
-    hint = "is an axis' sign changed, or are two columns swapped, in a part of the file?"
-    return [f"{tracks.source}: {said} {lines[0]} and {lines[1]}; {hint}"]
-
-
-def _is_mirrored(first: Array, second: Array) -> Array:
-    """Whether points ``(..., feature, 3)`` match others far better by a reflection.
-
-    From the singular values s of the correlation: the residual of the best orthogonal matrix is
-    ``|a|^2 + |b|^2 - 2 sum s``, that of the best rotation larger by ``4 s_3`` if they differ. Flat
-    bodies, ``s_3 = 0``, are their own mirror image.
-    """
-    seen = np.asarray(~np.isnan(first + second).any(-1, keepdims=True))
-    count = np.asarray(seen.sum(-2, keepdims=True))
-    a, b = (_centred(points, seen, count) for points in (first, second))
-    left, scale, right = np.linalg.svd(np.swapaxes(a, -1, -2) @ b)
-    improper = np.linalg.det(left) * np.linalg.det(right) < 0
-    total = np.sum(a * a, axis=(-2, -1)) + np.sum(b * b, axis=(-2, -1))
-    residual = np.maximum(total - 2 * scale.sum(-1), 1e-14 * total)
-    solid = (count[..., 0, 0] >= 4) & (scale[..., 2] > 1e-3 * scale[..., 0])
-    return np.asarray(improper & solid & (4 * scale[..., 2] > _MIRRORED * residual))
-
-
-def _centred(points: Array, seen: BoolArray, count: IntArray) -> Array:
-    mean = np.sum(points, axis=-2, keepdims=True, where=seen) / np.maximum(count, 1)
-    return np.where(seen, points - mean, 0.0)
-
-
-def _geometry(tracks: Tracks, points: Array, body: BodyPoints) -> list[str]:
-    """What differs from the known geometry: names, scale, handedness."""
-    unknown = [name for name in tracks.features if name not in body.features]
-    told = []
-    if unknown:
-        known = ", ".join(body.features[:20])
-        told.append(
-            f"{tracks.source}: {', '.join(unknown)} not in {body.source}, which has {known}"
-        )
-    shared = [name for name in tracks.features if name in body.features]
-    if len(shared) < 3:
-        return told
-    seen = points[:, [tracks.features.index(name) for name in shared]]
-    model = body.points[[body.features.index(name) for name in shared]]
-    if _is_mirrored(np.broadcast_to(model, seen.shape), seen).mean() > 0.5:
-        hint = "is an axis' sign changed, or are two columns swapped?"
-        told.append(f"{tracks.source}: points match {body.source} as a mirror image only; {hint}")
-    distance = np.linalg.norm(seen[:, :, None] - seen[:, None], axis=-1)
-    known_distance = np.linalg.norm(model[:, None] - model[None], axis=-1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = distance / known_distance
-    if (held := ratio[np.isfinite(ratio)]).size and not 0.8 < np.median(held) < 1.25:
-        said = f"lengths are {np.median(held):.3g} times those of {body.source}"
-        told.append(f"{tracks.source}: {said}; is the unit of one of them another one?")
-    return told

@@ -11,11 +11,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.tracks.assemble import PIXEL, POINT, SIGMA, Rows, assemble, codes
+from debrisest.tracks.assemble import assemble
 from debrisest.tracks.columns import Layout
 from debrisest.tracks.points import ONE_CAMERA, measured
 from debrisest.tracks.report import Report
-from debrisest.tracks.table import Sheet, Table, read_table
+from debrisest.tracks.rows import PIXEL, POINT, SIGMA, Rows, codes
+from debrisest.tracks.sheet import Sheet
+from debrisest.tracks.table import Table, read_table
 from debrisest.tracks.types import Tracks
 
 _SUFFIXES = (*POINT, "sigma_m", *SIGMA, *PIXEL, "range_m")

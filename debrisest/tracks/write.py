@@ -8,8 +8,8 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.files import replacing
-from debrisest.tracks.assemble import PIXEL, POINT, SIGMA
 from debrisest.tracks.quaternions import NAMES
+from debrisest.tracks.rows import PIXEL, POINT, SIGMA
 from debrisest.tracks.types import BodyPoints, Poses, Tracks
 
 

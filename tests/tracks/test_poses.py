@@ -11,7 +11,7 @@ from debrisest.tracks.attitude import attitude_at, read_attitude
 from debrisest.tracks.body_points import read_body_points
 from debrisest.tracks.frames import read_times
 from debrisest.tracks.read import read_measured
-from debrisest.tracks.table import open_sheet
+from debrisest.tracks.sheet import open_sheet
 from debrisest.tracks.types import Poses
 from tests.tracks.conftest import Write, refusal
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from debrisest.arrays import Array
 from debrisest.tracks.body_points import read_body_points
 from debrisest.tracks.read import read_measured
-from debrisest.tracks.table import open_sheet
+from debrisest.tracks.sheet import open_sheet
 from debrisest.tracks.types import BodyPoints, Poses, Tracks
 from debrisest.tracks.write import (
     write_body_points,

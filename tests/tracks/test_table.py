@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from debrisest.tracks.columns import Layout
-from debrisest.tracks.table import Table, open_sheet, read_table
+from debrisest.tracks.sheet import open_sheet
+from debrisest.tracks.table import Table, read_table
 from tests.tracks.conftest import Write, refusal
 
 LAYOUT = Layout(("time_s", "name", "x_m"), ("y_m",), frozenset(("name",)), frozenset(("y_m",)))
