@@ -19,6 +19,7 @@ from debrisest.tracks.types import BodyPoints, Tracks
 
 _MOST = 2_000_000  # distances looked at; more epochs are thinned out
 _FAR = 6.0  # times the usual spread: a feature that is not rigid with the rest
+_FEW = 5  # epochs: with fewer, one feature's spread by chance is another's many times
 _SOFT = 0.1  # of the body's size: a spread that no noise of use has
 
 
@@ -62,6 +63,8 @@ def _loose(tracks: Tracks, points: Array, lines: IntArray) -> list[str]:
     if usual > _SOFT * size:
         said = f"distances between features vary by {usual:.3g} m, of a body of {size:.3g} m"
         return [f"{tracks.source}: {said}: this is not one rigid body{_column(points)}"]
+    if len(points) < _FEW:
+        return []
     limit, told = _FAR * max(usual, 1e-9 * size), []
     for index in np.flatnonzero(each > limit).tolist():
         said = f"{tracks.features[index]} is not rigid with the rest: its distances vary by"

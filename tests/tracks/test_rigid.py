@@ -19,9 +19,10 @@ def tracks(points: Array) -> Tracks:
 
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("noise", [0.0, 1e-3, 0.05])
-def test_nothing_is_told_of_a_rigid_body(noise: float, seed: int) -> None:
+@pytest.mark.parametrize("epochs", [2, 3, 60])
+def test_nothing_is_told_of_a_rigid_body(epochs: int, noise: float, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    points = motion(60, 0.0)[1]
+    points = motion(epochs, 0.0)[1]
     points += noise * rng.normal(size=points.shape)
     points[rng.random(points.shape[:2]) < 0.3] = np.nan
     assert check_rigid(tracks(points), KNOWN) == []
