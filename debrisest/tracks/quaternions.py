@@ -12,6 +12,7 @@ from debrisest.tracks.report import Report
 
 NAMES = ("q0", "q1", "q2", "q3")
 _UNIT = 1e-3
+_JUMP = 0.5  # rad: a turn between neighbours that is told, if it is ten usual ones
 
 
 def unit_quaternions(q: Array, lines: IntArray, report: Report) -> Array:
@@ -40,9 +41,16 @@ def check_order(q: Array, lines: IntArray, report: Report) -> tuple[str, ...]:
         lambda row: say.format(degrees[0][row - 1], lines[row - 1], degrees[1][row - 1]),
         NAMES[0],
     )
+    told = []
     if (np.abs(q[:, 3]) > 0.9).all():
-        return ("q3 is above 0.9 throughout: a half turn, or is the scalar last? It must be first",)
-    return ()
+        told.append(
+            "q3 is above 0.9 throughout: a half turn, or is the scalar last? It must be first"
+        )
+    jumps = np.flatnonzero(turn > max(10 * usual, _JUMP))
+    if jumps.size:
+        said = f"turns by {degrees[0][jumps[0]]:.0f} deg up to line {lines[jumps[0] + 1]}"
+        told.append(f"{said}, the median is {np.degrees(usual):.2g}: {jumps.size} such jumps")
+    return tuple(told)
 
 
 def _angle(p: Array, q: Array) -> Array:

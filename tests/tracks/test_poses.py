@@ -90,6 +90,14 @@ def test_a_start_upside_down_is_told(write: Write) -> None:
     assert not any("scalar last" in note for note in read(write(text(Q))).notes)
 
 
+def test_a_row_that_jumps_is_told_with_its_line(write: Write) -> None:
+    odd = Q.copy()
+    odd[5, 1] *= -1
+    notes = read(write(text(odd))).notes
+    assert any("up to line 7" in note and "2 such jumps" in note for note in notes)
+    assert not any("jumps" in note for note in read(write(text(Q))).notes)
+
+
 def test_attitude_between_epochs_is_on_the_great_circle(write: Write) -> None:
     flipped = Q * np.where(np.arange(12) % 3 == 0, -1.0, 1.0)[:, None]
     attitude = read_attitude(open_sheet(write(text(flipped))))
