@@ -35,7 +35,7 @@ def assemble(rows: Rows, notes: tuple[str, ...] = ()) -> Tracks:
         rows.source, epochs.times, rows.features, epochs.lines,
         placed(rows.point, POINT[0]), placed(rows.sigma, "sigma_m"),
         rows.cameras, _pixels(rows, epochs, report), _ranges(rows, epochs, place, report),
-        notes + epochs.notes + _duplicates(rows, place) + _told(rows),
+        notes + epochs.notes + _duplicates(rows) + _told(rows),
     )  # fmt: skip
     alone = _alone(tracks, report)
     report.check()
@@ -73,7 +73,7 @@ def _ranges(rows: Rows, epochs: Epochs, place: IntArray, report: Report) -> Arra
     return ranges
 
 
-def _duplicates(rows: Rows, place: IntArray) -> tuple[str, ...]:
+def _duplicates(rows: Rows) -> tuple[str, ...]:
     """Rows that say again what another one says (contradictions are refused elsewhere)."""
     parts = [v for v in (rows.point, rows.sigma, rows.pixel, rows.range) if v is not None]
     keys = np.column_stack([rows.time, rows.feature, rows.camera, *parts])
@@ -96,8 +96,10 @@ def _told(rows: Rows) -> tuple[str, ...]:
     if once.any() and len(rows.lines) > len(rows.features):
         names = [name for name, single in zip(rows.features, once) if single]
         notes.append(f"seen in one row only: {', '.join(names[:10])}; are the names right?")
-    if rows.sigma is not None and np.nanmin(rows.sigma) == np.nanmax(rows.sigma):
-        notes.append(f"sigma is {np.nanmax(rows.sigma):g} m for all points")
+    given = np.zeros(0) if rows.sigma is None else rows.sigma
+    sigma = np.unique(given[~np.isnan(given)])
+    if len(sigma) == 1:
+        notes.append(f"sigma is {sigma[0]:g} m for all points")
     return tuple(notes)
 
 

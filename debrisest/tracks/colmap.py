@@ -66,17 +66,27 @@ def read_colmap(
 def _tracks(path: Path, images: list[Image], time: Array, note: str) -> Tracks:
     kept = [image.seen[image.seen[:, 2] >= 0] for image in images]
     counts = [len(seen) for seen in kept]
-    seen = np.concatenate(kept)
+    seen, of_image = np.concatenate(kept), np.repeat(np.arange(len(images)), counts)
+    seen, of_image, doubtful = _seen_once(seen, of_image)
     if not len(seen):
         raise UserError(f"{path}: no image sees a point of the model")
     feature, features = codes([str(int(number)) for number in seen[:, 2]])
     camera, cameras = codes([image.camera for image in images])
     lines = np.array([image.line + 1 for image in images])
     rows = Rows(
-        str(path), np.repeat(time, counts), feature, np.repeat(camera, counts),
-        np.repeat(lines, counts), features, cameras, None, None, seen[:, :2], None,
+        str(path), time[of_image], feature, camera[of_image], lines[of_image], features,
+        cameras, None, None, seen[:, :2], None,
     )  # fmt: skip
-    return assemble(rows, (f"{len(images)} images of a COLMAP model", note))
+    return assemble(rows, (f"{len(images)} images of a COLMAP model", note, *doubtful))
+
+
+def _seen_once(seen: Array, of_image: IntArray) -> tuple[Array, IntArray, tuple[str, ...]]:
+    """Leave out points that an image has at two places, as COLMAP may give them."""
+    pairs = np.column_stack([of_image, seen[:, 2]])
+    _, index, count = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    once = count[index.ravel()] == 1
+    notes = () if once.all() else (f"{(~once).sum()} pixels left out: a point twice in an image",)
+    return seen[once], of_image[once], notes
 
 
 def _poses(path: Path, images: list[Image], time: Array, note: str) -> Poses:

@@ -65,6 +65,9 @@ def check_rows(rows: Rows, report: Report) -> None:
     if rows.pixel is not None:
         wrong = ~np.isnan(rows.pixel[:, 0]) & (rows.camera < 0)
         report.where(wrong, rows.lines, "of which camera is this pixel?", "camera")
+    measured = [v for v in (rows.point, rows.pixel, rows.range) if v is not None]
+    if all(np.isnan(values).all() for values in measured):
+        report.add(int(rows.lines[0]), "nothing was observed, in this row and all others")
     _check_whole(rows, report)
 
 

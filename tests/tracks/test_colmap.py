@@ -69,6 +69,14 @@ def test_an_image_that_sees_nothing_is_an_epoch_without_features(tmp_path: Path)
     assert len(model.poses.times) == 4
 
 
+def test_a_point_at_two_places_of_an_image_is_left_out_and_told(tmp_path: Path) -> None:
+    twice = lambda name, text: text.replace(" -1\n2", " 9\n2")  # noqa: E731
+    model = read_measured(write_model(tmp_path, twice), rate_hz=10.0)
+    assert isinstance(model, ColmapModel)
+    assert np.isnan(model.tracks.pixels[0, 0]).all(-1).tolist() == [True, False, True, False, False]
+    assert any("2 pixels left out" in note for note in model.tracks.notes)
+
+
 @pytest.mark.parametrize(
     ("file", "old", "new", "said"),
     [

@@ -122,6 +122,7 @@ def test_features_are_in_natural_order(write: Write) -> None:
         (text(*ROWS, "2,p1,1,,0"), "8: give all of x_m, y_m, z_m, or none"),
         (text(*ROWS, "2,,1,2,3"), "8: feature: empty; only a range can do without"),
         (text("0,a,1,2", head="time_s,feature,x_m,y_m\n"), "1: x_m, y_m without z_m: give all"),
+        (text("0,a,,,", "1,a,,,"), "2: nothing was observed, in this row and all others"),
         (text("0,a", head="time_s,feature\n"), "1: nothing measured: give x_m, y_m, z_m or u_px"),
         (text("0,a,1,2,3,mm", head=HEAD.replace("\n", ",unit\n")), "1: unknown column 'unit'"),
         (
