@@ -148,7 +148,7 @@ def plot(
     """Draw the figures of the results that are up to date, as PNG and SVG."""
 
     def draw() -> None:
-        from debrisest.run.plan import check_selection
+        from debrisest.run.plan import check_selection, plan
         from debrisest.show.plots.draw import draw_all
 
         selection = _selection(runs, case, estimator, False, "assess")
@@ -157,11 +157,37 @@ def plot(
         for scenario in scenarios:
             if not set(scenario.cases) & set(selection.cases or scenario.cases):
                 continue
-            for path in draw_all(scenario, out, selection):
+            for path in draw_all(scenario, out, plan(scenario, out, selection)):
                 if not quiet:
                     print(path)
 
     _told(draw)
+
+
+@app.command()
+def status(
+    configs: Configs,
+    out: Out = _RESULTS,
+    runs: Runs = None,
+    case: CaseNames = None,
+    estimator: EstimatorNames = None,
+    settings: Settings = None,
+) -> None:
+    """Tell which results are there, what is out of date and why, and how the runs ended."""
+    from debrisest.results.open import find_results
+    from debrisest.results.overview import overview
+    from debrisest.run.plan import check_selection, plan
+
+    selection = _selection(runs, case, estimator, False, "assess")
+    scenarios = _loaded(configs, settings)
+    _told(partial(check_selection, scenarios, selection))
+    for scenario in scenarios:
+        steps = _told(partial(plan, scenario, out, selection))
+        results = find_results(out / scenario.name)
+        for row in _told(partial(overview, results, steps)):
+            print(*row.lines(), sep="\n")
+        for sentence in results.left_out:
+            print(sentence, file=sys.stderr)
 
 
 @app.command()
@@ -232,22 +258,25 @@ def _show_tables(
     check: bool,
 ) -> bool:
     """Write all tables, print them in a format; return whether a verdict is not as expected."""
-    from debrisest.run.sweep import chosen, tabulate, write_tables
+    from debrisest.run.plan import Selection, plan
     from debrisest.show.tables.cells import unexpected
     from debrisest.show.tables.render import render_all
+    from debrisest.show.tables.tabulate import chosen, tabulate, write_tables
 
+    every = Selection(selection.runs)
     wrong: list[str] = []
     shown: list[tuple[LoadedScenario, DataFrame]] = []
     for scenario in scenarios:
-        rows, stale = _told(partial(tabulate, scenario, out, selection.runs))
-        means = scenario.common.tables.means
+        steps = _told(partial(plan, scenario, out, every))
+        rows, stale = _told(partial(tabulate, scenario, out, steps))
+        asked = partial(selection.asks_for, means=scenario.common.tables.means)
         for step in stale[:1]:
             more = f" (and {len(stale) - 1} more)" if len(stale) > 1 else ""
             print(f"left out of the tables: {step.name}: {step.reason}{more}", file=sys.stderr)
         if not rows.empty:
             write_tables(scenario, out, rows)
-            shown.append((scenario, chosen(rows, selection, means)))
-        wrong += unexpected(scenario, rows, partial(selection.asks_for, means=means))
+            shown.append((scenario, chosen(rows, asked)))
+        wrong += unexpected(scenario, rows, asked)
     if shown and form is not None:
         print(render_all(shown, form), end="")
     if check:
