@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from debrisest.errors import UserError
     from debrisest.notebook import load, schema, sweep
+    from debrisest.results.open import open_results
 
 __version__ = version = "0.1.0"
 __all__ = ["UserError", "__version__", "load", "open_results", "schema", "sweep", "version"]

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +10,12 @@ import pandas as pd
 
 from debrisest.errors import UserError
 from debrisest.plugins.load import load_plugins, read_plugins
-from debrisest.run.plan import Selection, check_selection
-from debrisest.run.sweep import Machine, bring_up_to_date, chosen, tabulate, write_tables
+from debrisest.run.plan import Selection, check_selection, plan
+from debrisest.run.sweep import Machine, bring_up_to_date
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.scenario.schema import ScenarioFile, scenario_model
 from debrisest.shipped import scenario_path
+from debrisest.show.tables.tabulate import chosen, tabulate, write_tables
 
 
 def load(
@@ -50,11 +52,12 @@ def sweep(
     selection = Selection(runs, cases, estimators, force=force)
     check_selection([scenario], selection)
     bring_up_to_date([scenario], Path(out), selection, Machine(jobs, quiet=quiet))
-    rows, _ = tabulate(scenario, Path(out), runs)
+    rows, _ = tabulate(scenario, Path(out), plan(scenario, Path(out), Selection(runs)))
     if rows.empty:
         raise UserError(f"{scenario.name}: there are no tables, since no step gave a result")
     write_tables(scenario, Path(out), rows)
-    return chosen(rows, selection, scenario.common.tables.means)
+    means = scenario.common.tables.means
+    return chosen(rows, partial(selection.asks_for, means=means))
 
 
 def schema(plugins: Iterable[str | Path] = ()) -> dict[str, Any]:

@@ -28,6 +28,8 @@ class Quantity(NamedTuple):
     table_unit: str = ""
     chi_square: ChiSquare | None = None
     """Of a normalised square per dimension, which the tables judge in words."""
+    after_figure: str = ""
+    """What follows its figure in a laid-out table."""
 
 
 COORDINATES = (
@@ -306,7 +308,10 @@ VOCABULARY: dict[str, Quantity] = {
     "aligned_attitude": Quantity(_TIME, "rad", "attitude error after it", "deg"),
     "aligned_points": Quantity(_TIME, "m", "error of the features after it, RMS", "m"),
     "aligned_inertia": Quantity(_TIME, "1", "relative error of the inertia's shape after it", "1"),
-    "unobservable_ratios": Quantity(_RUN, "1", "directions of log_inertia nothing tells of", "1"),
+    "unobservable_ratios": Quantity(
+        *(_RUN, "1", "directions of log_inertia nothing tells of", "1"),
+        after_figure=" of 5 unobservable",
+    ),
     "ratio_deviation": Quantity(_RUN, "1", "1-sigma of the worst direction that is told", "1"),
     "position_remaining": Quantity(_RUN, "1", "position error at the end by that at first", "1"),
     "velocity_remaining": Quantity(_RUN, "1", "velocity error at the end by that at first", "1"),

@@ -20,6 +20,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "sweep": stages.sweep,
     "table": show.table,
     "plot": show.plot,
+    "status": show.status,
     "validate": scenarios.validate,
     "schema": scenarios.schema,
     "init": scenarios.init,

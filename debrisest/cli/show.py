@@ -1,4 +1,4 @@
-"""The commands that show results: table, plot."""
+"""The commands that show results: table, plot, status."""
 
 import sys
 from collections.abc import Sequence
@@ -59,6 +59,7 @@ def plot(
     quiet: Unprinted = False,
 ) -> None:
     """Draw the figures of the results that are up to date, as PNG and SVG."""
+    from debrisest.run.plan import plan
     from debrisest.show.plots.draw import draw_all
 
     scenarios = load_all(configs, settings, plugins)
@@ -66,9 +67,33 @@ def plot(
     for scenario in scenarios:
         if not set(scenario.cases) & set(selection.cases or scenario.cases):
             continue
-        for path in draw_all(scenario, out, selection):
+        for path in draw_all(scenario, out, plan(scenario, out, selection)):
             if not quiet:
                 print(path)
+
+
+def status(
+    configs: Configs,
+    out: Out = RESULTS,
+    runs: Runs = None,
+    case: CaseNames = None,
+    estimator: EstimatorNames = None,
+    settings: Settings = None,
+    plugins: Plugins = None,
+) -> None:
+    """Tell which results are there, what is out of date and why, and how the runs ended."""
+    from debrisest.results.open import find_results
+    from debrisest.results.overview import overview
+    from debrisest.run.plan import plan
+
+    scenarios = load_all(configs, settings, plugins)
+    selection = select(scenarios, runs, case, estimator)
+    for scenario in scenarios:
+        results = find_results(out / scenario.name)
+        for row in overview(results, plan(scenario, out, selection)):
+            print(*row.lines(), sep="\n")
+        for sentence in results.left_out:
+            print(sentence, file=sys.stderr)
 
 
 def show_tables(
@@ -79,22 +104,23 @@ def show_tables(
     check: bool,
 ) -> bool:
     """Write all tables, print them in a format; return whether a verdict is not as expected."""
-    from debrisest.run.sweep import chosen, tabulate, write_tables
+    from debrisest.run.plan import Selection, plan
     from debrisest.show.tables.cells import unexpected
     from debrisest.show.tables.render import render_all
+    from debrisest.show.tables.tabulate import chosen, tabulate, write_tables
 
     wrong: list[str] = []
     shown: list[tuple[LoadedScenario, DataFrame]] = []
     for scenario in scenarios:
-        rows, stale = tabulate(scenario, out, selection.runs)
-        means = scenario.common.tables.means
+        rows, stale = tabulate(scenario, out, plan(scenario, out, Selection(selection.runs)))
+        asked = partial(selection.asks_for, means=scenario.common.tables.means)
         for step in stale[:1]:
             more = f" (and {len(stale) - 1} more)" if len(stale) > 1 else ""
             print(f"left out of the tables: {step.name}: {step.reason}{more}", file=sys.stderr)
         if not rows.empty:
             write_tables(scenario, out, rows)
-            shown.append((scenario, chosen(rows, selection, means)))
-        wrong += unexpected(scenario, rows, partial(selection.asks_for, means=means))
+            shown.append((scenario, chosen(rows, asked)))
+        wrong += unexpected(scenario, rows, asked)
     if shown and form is not None:
         print(render_all(shown, form), end="")
     if check:

@@ -62,8 +62,8 @@ def write(
             file[name].attrs["frame"] = (frames or {})[name]
 
 
-def inspect(path: Path) -> Checkpoint:
-    """Return what a path holds; every checksum is verified."""
+def inspect(path: Path, numbers: bool = True) -> Checkpoint:
+    """Return what a path holds; every checksum is verified, those of numbers if asked for."""
     if not path.exists():
         return Checkpoint(Condition.MISSING)
     if not path.is_file():
@@ -82,23 +82,32 @@ def inspect(path: Path) -> Checkpoint:
             texts = {name: dataset[()] for name, dataset in file.items() if _is_text(dataset)}
             if attributes.pop("text_checksum") != _checksum(attributes, texts):
                 return Checkpoint(Condition.DAMAGED)
-            for dataset in file.values():
+            for dataset in file.values() if numbers else ():
                 dataset[()]
     except Exception:
         return Checkpoint(Condition.DAMAGED)
     return Checkpoint(Condition.WHOLE, attributes)
 
 
-def read(path: Path, runs: int | None = None, names: Container[str] = VOCABULARY) -> Data:
-    """Return the named datasets of a whole checkpoint, of the first ``runs`` runs."""
+def read(
+    path: Path, runs: int | None = None, names: Container[str] = VOCABULARY, first: int = 0
+) -> Data:
+    """Return the named datasets of a whole checkpoint, of its runs ``first`` up to ``runs``."""
     data: Data = {}
     with h5py.File(path, "r") as file:
         for name, dataset in file.items():
             if name not in VOCABULARY or name not in names:
                 continue
-            value = dataset[:runs] if has_runs(name) else dataset[()]
+            value = dataset[first:runs] if has_runs(name) else dataset[()]
             data[name] = np.array([t.decode() for t in value]) if _is_text(dataset) else value
     return data
+
+
+def frames(path: Path) -> dict[str, str]:
+    """Return the axes and origin of those datasets of a whole checkpoint that say it."""
+    with h5py.File(path, "r") as file:
+        said = ((name, dataset.attrs.get("frame")) for name, dataset in file.items())
+        return {name: str(frame) for name, frame in said if frame is not None}
 
 
 def _is_text(dataset: Any) -> bool:

@@ -125,10 +125,8 @@ def _submit(pool: Executor, step: Step) -> Future[None]:
 
 def run_step(step: Step) -> None:
     """Compute one step and write its file."""
-    stage = STAGES[step.stage]
-    result = isolate(
-        lambda data: _declared(stage.run(step.case, step.estimator, data)), _read(step)
-    )
+    stage, estimator = STAGES[step.address.stage], step.address.estimator
+    result = isolate(lambda data: _declared(stage.run(step.case, estimator, data)), _read(step))
     times = step.case.scenario.clock.times
     frames = step.case.scenario.frames
     store.write(step.path, {"time_s": times, **result}, _attributes(step), frames)
@@ -141,30 +139,25 @@ def _declared(data: Data) -> Data:
     return data
 
 
-def failures_of(data: Data) -> dict[int, str]:
-    """Return the reasons of the runs that gave no result."""
-    return {int(run): str(why) for run, why in zip(data["run"], data["failure"]) if why}
-
-
 def _read(step: Step) -> Data:
     """Return what the stages before this one stored, each one's status under its own name."""
     if not step.upstream:
-        return {"run": np.arange(step.first_run, step.first_run + step.runs, dtype=float)}
+        return {"run": step.address.first_run + np.arange(step.runs, dtype=float)}
     data: Data = {}
     for upstream in step.upstream:
         found = store.read(upstream.path, step.runs)
         if "status" in found:
-            found[f"{upstream.stage}_status"] = found.pop("status")
+            found[f"{upstream.address.stage}_status"] = found.pop("status")
         data |= found
     return data
 
 
 def _attributes(step: Step) -> dict[str, Any]:
     return {
-        "stage": step.stage,
-        "estimator": step.estimator,
-        "case": step.case.name,
-        "first_run": step.first_run,
+        "stage": step.address.stage,
+        "estimator": step.address.estimator,
+        "case": step.address.case,
+        "first_run": step.address.first_run,
         "runs": step.runs,
         "stage_key": step.key,
         "inputs": json.dumps(step.inputs),

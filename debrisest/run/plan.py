@@ -9,42 +9,22 @@ from typing import Any
 
 from debrisest.errors import UserError
 from debrisest.results import store
+from debrisest.results.address import Address
+from debrisest.results.assessed import SIMULATED
+from debrisest.results.status import Wanted, out_of_date
 from debrisest.run.stages.pipeline import STAGES, stages_of
 from debrisest.scenario.load import Case, LoadedScenario
 from debrisest.scenario.mistakes import allowed_names
 
 RUNS_PER_FILE = 20
-SIMULATED = "-"
-"""Stands for the estimator in cells of what was simulated; no estimator can have this name."""
 
 
-@dataclass(frozen=True)
-class Step:
+@dataclass(frozen=True, kw_only=True)
+class Step(Wanted):
     """One stage of one chunk of runs: reads its upstream files, writes its own."""
 
     case: Case
-    estimator: str
-    stage: str
-    first_run: int
-    runs: int
-    path: Path
     upstream: tuple["Step", ...]
-    inputs: dict[str, Any]
-    key: str
-    reason: str
-    """Why it has to run; empty where its file is up to date."""
-    notice: str = ""
-    """What the user should know about the file that is replaced."""
-
-    @property
-    def name(self) -> str:
-        """Return what this step is called in messages."""
-        estimator = f" {self.estimator}" if self.estimator else ""
-        last = self.first_run + self.runs - 1
-        return (
-            f"{self.case.scenario_name} {self.case.name}: {self.stage}{estimator}, "
-            f"runs {self.first_run}-{last}"
-        )
 
 
 @dataclass(frozen=True)
@@ -73,10 +53,9 @@ def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step
         case = scenario.cases[name]
         wanted_of = selection.estimators or case.estimators
         estimators = [one for one in case.estimators if one in wanted_of]
-        folder = out / scenario.name / name
         wanted = selection.runs or case.scenario.runs
         for first in range(0, wanted, RUNS_PER_FILE):
-            chunk = _Chunk(case, folder, first, min(RUNS_PER_FILE, wanted - first), selection)
+            chunk = _Chunk(case, out, first, min(RUNS_PER_FILE, wanted - first), selection)
             steps += chunk.steps(estimators)
     return steps
 
@@ -98,10 +77,10 @@ def check_selection(scenarios: Sequence[LoadedScenario], selection: Selection) -
 
 @dataclass(frozen=True)
 class _Chunk:
-    """Some runs of a case, and where their files lie."""
+    """Some runs of a case, and the folder that their files go to."""
 
     case: Case
-    folder: Path
+    out: Path
     first: int
     runs: int
     selection: Selection
@@ -127,57 +106,26 @@ class _Chunk:
 
     def _step(self, stage: str, estimator: str, upstream: tuple[Step, ...]) -> Step:
         inputs = STAGES[stage].inputs(self.case, estimator)
-        key = _key(inputs, [step.key for step in upstream])
-        name = f"{stage}-{estimator}" if estimator else stage
-        path = self.folder / f"{name}.{self.first:06d}.h5"
-        found = store.inspect(path)
-        reason, notice = self._why(path, found, key, inputs, upstream)
-        held = found.attributes.get("runs", 0) if found.attributes.get("stage_key") == key else 0
-        self.held.append(held if reason else 0)
-        return Step(
-            self.case,
-            estimator,
-            stage,
-            self.first,
-            self.runs,
-            path,
-            upstream,
-            inputs,
-            key,
-            reason,
-            notice,
+        address = Address(self.case.scenario_name, self.case.name, stage, estimator, self.first)
+        step = Step(
+            case=self.case,
+            upstream=upstream,
+            address=address,
+            path=address.path(self.out),
+            runs=self.runs,
+            inputs=inputs,
+            key=_key(inputs, [step.key for step in upstream]),
         )
+        found = store.inspect(step.path)
+        reason, notice = out_of_date(step, found, self._asked_for(upstream))
+        same = found.attributes.get("stage_key") == step.key
+        self.held.append(found.attributes.get("runs", 0) if same and reason else 0)
+        return replace(step, reason=reason, notice=notice)
 
-    def _why(
-        self,
-        path: Path,
-        found: store.Checkpoint,
-        key: str,
-        inputs: dict[str, Any],
-        upstream: tuple[Step, ...],
-    ) -> tuple[str, str]:
-        """Return why the step has to run, and a notice where a file is given up for it."""
-        if found.condition is store.Condition.FOREIGN:
-            raise UserError(
-                f"{path} is {found.condition.value}; "
-                "move it away or choose another folder with --out"
-            )
-        if found.condition is store.Condition.MISSING:
-            return "not there yet", ""
-        if found.condition is not store.Condition.WHOLE:
-            return f"its file is {found.condition.value}", (
-                f"{path} is {found.condition.value}: it is computed again"
-            )
-        if self.selection.force:
-            return "asked for by --force", ""
-        before = [step for step in upstream if step.reason]
-        if before:
-            return f"{before[0].stage} runs before it", ""
-        if found.attributes.get("stage_key") != key:
-            return _difference(json.loads(found.attributes["inputs"]), inputs), ""
-        if found.attributes["runs"] < self.runs:
-            return f"holds {found.attributes['runs']} runs, {self.runs} are wanted", ""
-        return "", ""
+    def _asked_for(self, upstream: tuple[Step, ...]) -> str:
+        """Return why a step runs whatever its file holds."""
+        before = [f"{step.address.stage} runs before it" for step in upstream if step.reason]
+        return "asked for by --force" if self.selection.force else "".join(before[:1])
 
 
 def _within(stage: str, last: str) -> bool:
@@ -188,34 +136,3 @@ def _within(stage: str, last: str) -> bool:
 def _key(inputs: dict[str, Any], upstream: list[str]) -> str:
     """Hash inputs in their order, since the order of features and of sensors matters."""
     return hashlib.sha256(json.dumps([inputs, upstream]).encode()).hexdigest()
-
-
-def _difference(before: dict[str, Any], now: dict[str, Any]) -> str:
-    """Return the first keys whose values differ, with both values."""
-    was, now_is = _flat(before), _flat(now)
-    changed = [key for key in was | now_is if was.get(key) != now_is.get(key)]
-    if not changed and list(was) != list(now_is):
-        return "the order of its parts changed"
-    if not changed:
-        return "an earlier stage was computed anew"
-    told = [_change(key, was.get(key), now_is.get(key)) for key in changed[:3]]
-    return "; ".join(told) + ("; ..." if len(changed) > 3 else "")
-
-
-def _change(key: str, was: Any, now_is: Any) -> str:
-    part, plugin, name = key.partition(".plug-in ")
-    return f"{part}: plug-in {name} changed" if plugin else f"{key} was {was}, is {now_is}"
-
-
-def _flat(value: Any, prefix: str = "") -> dict[str, Any]:
-    if isinstance(value, dict):
-        items = value.items()
-    elif isinstance(value, list):
-        items = {str(index): item for index, item in enumerate(value)}.items()
-    else:
-        return {prefix: value}
-    return {
-        path: leaf
-        for key, item in items
-        for path, leaf in _flat(item, f"{prefix}.{key}" if prefix else str(key)).items()
-    }

@@ -3,8 +3,7 @@
 A new figure is a file with a function from data to a figure, and a line in ``FIGURES``.
 """
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,7 +11,9 @@ from matplotlib.figure import Figure
 
 from debrisest.arrays import Data
 from debrisest.errors import UserError
-from debrisest.run.plan import Selection, plan
+from debrisest.results.assessed import Assessed, assessed
+from debrisest.results.open import find_results
+from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots import (
     covariance_trace,
@@ -31,8 +32,6 @@ from debrisest.show.plots import (
 )
 from debrisest.show.plots.files import write
 from debrisest.show.plots.gather import Source, all_runs, simulations, single_runs
-from debrisest.show.tables.cells import Results
-from debrisest.show.tables.results import load_results
 
 
 class Kind(NamedTuple):
@@ -49,12 +48,6 @@ class Kind(NamedTuple):
     of_each_case: bool = False
     of_simulation: bool = False
     also: tuple[str, ...] = ()
-    not_with: tuple[str, ...] = ()
-    """Datasets of problems whose axes are not those that the figure speaks of."""
-
-    def suits(self, data: Data) -> bool:
-        """Return whether a run has what the figure needs."""
-        return set(self.needs) <= set(data) and not set(self.not_with) & set(data)
 
 
 FIGURES: dict[str, Kind] = {
@@ -62,7 +55,7 @@ FIGURES: dict[str, Kind] = {
     "recovered_quaternion": Kind(
         recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
     ),
-    "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma"), not_with=("relative_position_h",)),
+    "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma", "moments_b")),
     "error_over_time": Kind(
         error_over_time.error_over_time, error_over_time.QUANTITIES, of_all_runs=True
     ),
@@ -96,11 +89,11 @@ FIGURES: dict[str, Kind] = {
 }
 
 
-def draw_all(scenario: LoadedScenario, out: Path, selection: Selection) -> Iterator[Path]:
+def draw_all(scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]) -> Iterator[Path]:
     """Draw what the results that are up to date allow; yield each file once it is written."""
     folder = out / scenario.name / "plots"
     drawn = False
-    for name, source in _sources(scenario, out, selection):
+    for name, source in _sources(scenario, out, wanted):
         figure = FIGURES[name].draw(source.data, source.context)
         for path in write(figure, folder, "-".join((name, *source.names))):
             drawn = True
@@ -113,26 +106,29 @@ def draw_all(scenario: LoadedScenario, out: Path, selection: Selection) -> Itera
 
 
 def _sources(
-    scenario: LoadedScenario, out: Path, selection: Selection
+    scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]
 ) -> Iterator[tuple[str, Source]]:
     """Return every figure that can be drawn, with its data."""
-    steps = plan(scenario, out, replace(selection, force=False, last_stage="assess"))
-    results = load_results(steps)
-    for source in single_runs(scenario, steps, results):
-        for name, kind in FIGURES.items():
-            of_one_run = not kind.of_all_runs and not kind.of_simulation
-            if of_one_run and kind.suits(source.data):
-                yield name, source
-    for source in simulations(scenario, steps):
-        for name, kind in FIGURES.items():
-            if kind.of_simulation and set(kind.needs) <= set(source.data):
-                yield name, source
+    there = find_results(out / scenario.name)
+    results = up_to_date(there, wanted)
+    errors = assessed(up_to_date(there, wanted, complete=True))
+    of_one_run = {n: k for n, k in FIGURES.items() if not (k.of_all_runs or k.of_simulation)}
+    of_simulation = {name: kind for name, kind in FIGURES.items() if kind.of_simulation}
+    for source in single_runs(scenario, results, errors):
+        yield from ((name, source) for name in _suiting(of_one_run, source))
+    for source in simulations(scenario, results):
+        yield from ((name, source) for name in _suiting(of_simulation, source))
     for name, kind in FIGURES.items():
         if kind.of_all_runs:
-            yield from ((name, source) for source in _of_all_runs(scenario, results, kind))
+            yield from ((name, source) for source in _of_all_runs(scenario, errors, kind))
 
 
-def _of_all_runs(scenario: LoadedScenario, results: Results, kind: Kind) -> Iterator[Source]:
+def _suiting(figures: dict[str, Kind], source: Source) -> list[str]:
+    """Return the figures whose datasets are all there."""
+    return [name for name, kind in figures.items() if set(kind.needs) <= set(source.data)]
+
+
+def _of_all_runs(scenario: LoadedScenario, results: Assessed, kind: Kind) -> Iterator[Source]:
     """Return all runs of an estimator: of all cases, or of each case by itself."""
     if not kind.of_each_case:
         yield from all_runs(scenario, results, kind.needs)

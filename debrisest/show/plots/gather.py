@@ -1,60 +1,50 @@
-"""The data of figures: what is up to date in the store, of one run or of all runs."""
+"""The data of figures: of one run, of a simulation, or of all runs."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data
-from debrisest.results import store
-from debrisest.run.plan import Step
+from debrisest.results.assessed import Assessed, Result
+from debrisest.results.results import Results
 from debrisest.scenario.load import LoadedScenario
-from debrisest.show.tables.cells import Results
-from debrisest.show.tables.results import Result
-from debrisest.vocabulary import has_runs
-
-Chunks = dict[int, list[Step]]
-"""The steps of one case and estimator by their first run, upstream first."""
 
 
 class Source(NamedTuple):
     """What a figure is drawn from, in names, in words and in data."""
 
     names: tuple[str, ...]
-    """What tells the figure's file from others of its kind: case and estimator, or estimator."""
+    """What tells the figure's file from others of its kind: case and estimator, or one of them."""
     context: str
     data: Data
 
 
-def single_runs(
-    scenario: LoadedScenario, steps: Iterable[Step], results: Results
-) -> Iterator[Source]:
+def single_runs(scenario: LoadedScenario, results: Results, errors: Assessed) -> Iterator[Source]:
     """Return the first run that did not fail, of every case and estimator that has one."""
-    for (case, estimator), chunks in _chunks(list(steps)).items():
-        found = _first_good_run(chunks)
-        if found is not None:
-            run, data = found
-            context = f"{scenario.name}, case {case}, estimator {estimator}, run {run}"
-            result = results.get((case, estimator))
-            if result is not None and result.diverged(scenario.common.tables.diverged)[run]:
-                context += " (its filter diverged)"
-            yield Source((case, estimator), context, data)
+    for case in results.cases:
+        for estimator in results.estimators(case):
+            run = results.first_good_run(case, estimator)
+            if run is not None:
+                context = f"{scenario.name}, case {case}, estimator {estimator}, run {run}"
+                result = errors.get((case, estimator))
+                if result is not None and result.diverged(scenario.common.tables.diverged)[run]:
+                    context += " (its filter diverged)"
+                data = results.one_run(case, estimator, run)
+                yield Source((case, estimator), context, data)
 
 
-def simulations(scenario: LoadedScenario, steps: Iterable[Step]) -> Iterator[Source]:
+def simulations(scenario: LoadedScenario, results: Results) -> Iterator[Source]:
     """Return what was simulated of the first run that did not fail, of every case."""
-    chunks: dict[str, Chunks] = {}
-    for step in steps:
-        if step.stage == "simulate":
-            chunks.setdefault(step.case.name, {})[step.first_run] = [step]
-    for case, found in chunks.items():
-        first = _first_good_run(found)
-        if first is not None:
-            yield Source((case,), f"{scenario.name}, case {case}, run {first[0]}", first[1])
+    for case in results.cases:
+        run = results.first_good_run(case)
+        if run is not None:
+            context = f"{scenario.name}, case {case}, run {run}"
+            yield Source((case,), context, results.one_run(case, "", run))
 
 
 def all_runs(
-    scenario: LoadedScenario, results: Results, quantities: Sequence[str]
+    scenario: LoadedScenario, results: Assessed, quantities: Sequence[str]
 ) -> Iterator[Source]:
     """Return, for every estimator, the errors of the runs of all cases that did not diverge.
 
@@ -71,36 +61,6 @@ def all_runs(
         source = _pooled(scenario, estimator, chosen or list(mine.values()), quantities)
         if source is not None:
             yield source
-
-
-def _chunks(steps: Sequence[Step]) -> dict[tuple[str, str], Chunks]:
-    found: dict[tuple[str, str], Chunks] = {}
-    for step in steps:
-        if step.estimator:
-            chunk = found.setdefault((step.case.name, step.estimator), {})
-            chunk.setdefault(step.first_run, list(step.upstream[:1])).append(step)
-    return found
-
-
-def _first_good_run(chunks: Chunks) -> tuple[int, Data] | None:
-    """Return the number and the datasets, without their run axis, of the first good run."""
-    for first in sorted(chunks):
-        parts = [store.read(s.path, s.runs) for s in chunks[first] if not s.reason]
-        if not parts:
-            continue
-        failed = np.any([part["failure"] != "" for part in parts], axis=0)
-        if not failed.all():
-            index = int(np.argmin(failed))
-            return first + index, _one_run(parts, index)
-    return None
-
-
-def _one_run(parts: Iterable[Data], index: int) -> Data:
-    return {
-        name: value[index] if has_runs(name) else value
-        for part in parts
-        for name, value in part.items()
-    }
 
 
 def _pooled(

@@ -11,11 +11,10 @@ import pandas as pd
 from debrisest.arrays import Array, BoolArray
 from debrisest.assessment.consistency import consistent_interval
 from debrisest.assessment.statistics import bootstrap
-from debrisest.run.plan import SIMULATED
+from debrisest.results.assessed import SIMULATED, Assessed, Result
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.schema import Table, Tables
 from debrisest.show.tables.published import CellKey, Published, published_values
-from debrisest.show.tables.results import Result
 from debrisest.show.tables.verdict import Verdict, consistency, interval_meets, verdict
 from debrisest.vocabulary import TWO_SIDED, VOCABULARY, table_scale
 
@@ -25,10 +24,8 @@ COLUMNS = [
     *("runs", "failed", "diverged", "verdict", "consistent_low", "consistent_high"),
 ]
 
-Results = Mapping[tuple[str, str], Result]
 
-
-def cells(scenario: LoadedScenario, results: Results) -> pd.DataFrame:
+def cells(scenario: LoadedScenario, results: Assessed) -> pd.DataFrame:
     """Return one row per cell, in the order of the layout, then case, estimator, quantity."""
     published = published_values(scenario)
     rows = [
@@ -88,7 +85,7 @@ def _row(
     estimator: str,
     table: Table,
     scenario: LoadedScenario,
-    results: Results,
+    results: Assessed,
     published: Published | None,
 ) -> dict[str, object] | None:
     found = _measured(key, estimator, table, scenario, results)
@@ -120,7 +117,7 @@ def _said(quantity: str, found: Mapping[str, Any], published: Published | None) 
 
 
 def _measured(
-    key: CellKey, estimator: str, table: Table, scenario: LoadedScenario, results: Results
+    key: CellKey, estimator: str, table: Table, scenario: LoadedScenario, results: Assessed
 ) -> dict[str, Any] | None:
     """Return the figure of a cell with its interval and its runs, or None if it is not there."""
     tables, dataset = scenario.common.tables, _dataset(table, key.quantity)

@@ -5,16 +5,14 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from debrisest.run.plan import SIMULATED
+from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.tables.verdict import CONSISTENCY, SYMBOLS, Verdict
+from debrisest.vocabulary import VOCABULARY
 
 PAPER = "paper"
 _SHOWN = {SIMULATED: "simulated"}
 """Sources that are called otherwise in a laid-out table."""
-
-_WORDS = {"unobservable_ratios": " of 5 unobservable"}
-"""What follows the figure of a quantity."""
 
 
 class Sheet(NamedTuple):
@@ -85,7 +83,7 @@ def _text(part: pd.DataFrame, source: str, quantity: str) -> str:
     if own.empty:
         return ""
     measured, verdict = own["measured"].iloc[0], own["verdict"].iloc[0]
-    figure = f"{measured:.3g}{_WORDS.get(quantity, '')}" if pd.notna(measured) else "-"
+    figure = f"{measured:.3g}{VOCABULARY[quantity].after_figure}" if pd.notna(measured) else "-"
     lost = int(own["failed"].iloc[0] + own["diverged"].iloc[0])
     note = f"({lost}) " if lost else ""
     return f"{note}{figure} {SYMBOLS[Verdict(verdict)]}".rstrip()

@@ -12,11 +12,15 @@ from matplotlib.figure import Figure
 from debrisest.arrays import Array, Data
 from debrisest.errors import UserError
 from debrisest.results import store
-from debrisest.run.plan import Selection, plan
+from debrisest.results.assessed import Result, assessed
+from debrisest.results.open import find_results
+from debrisest.results.results import Results
+from debrisest.results.status import Wanted, up_to_date
+from debrisest.run.execute import _attributes
+from debrisest.run.plan import Selection, Step, plan
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.show.plots.draw import FIGURES, Kind, draw_all
 from debrisest.show.plots.gather import all_runs, single_runs
-from debrisest.show.tables.results import Result, load_results
 from debrisest.vocabulary import VOCABULARY
 
 SCENARIO = """
@@ -92,13 +96,23 @@ def _store(
 ) -> None:
     """Write the files of some stages as if they had been computed."""
     for step in plan(scenario, out, Selection()):
-        if step.stage in stages:
-            data = _made_up(step.stage, step.runs)
+        stage = step.address.stage
+        if stage in stages:
+            data = _made_up(stage, step.runs)
             data["failure"] = data["failure"].astype(object)
-            data["failure"][: (failing or {}).get(step.stage, 0)] = "broken"
+            data["failure"][: (failing or {}).get(stage, 0)] = "broken"
             data["failure"] = data["failure"].astype(str)
-            attributes = {"stage_key": step.key, "runs": step.runs, "inputs": "{}"}
-            store.write(step.path, data, attributes)
+            store.write(step.path, data, _attributes(step))
+
+
+def _draw(scenario: LoadedScenario, out: Path, **selected: list[str]) -> list[Path]:
+    return list(draw_all(scenario, out, plan(scenario, out, Selection(**selected))))
+
+
+def _there(scenario: LoadedScenario, out: Path, steps: list[Step] | None = None) -> Results:
+    """The results that are up to date with a plan, by default of the whole scenario."""
+    wanted: list[Wanted] = [*(steps or plan(scenario, out, Selection()))]
+    return up_to_date(find_results(out / scenario.name), wanted)
 
 
 def _names(paths: Iterable[Path]) -> set[str]:
@@ -107,7 +121,7 @@ def _names(paths: Iterable[Path]) -> set[str]:
 
 def test_everything_is_drawn_of_complete_results(scenario: LoadedScenario, tmp_path: Path) -> None:
     _store(scenario, tmp_path, ["simulate", "recover", "filter", "assess"])
-    paths = list(draw_all(scenario, tmp_path, Selection(cases=["x"])))
+    paths = _draw(scenario, tmp_path, cases=["x"])
     single = ["raw_quaternion", "recovered_quaternion", "rates"]
     assert _names(paths) == {
         f"{name}.{form}"
@@ -126,7 +140,7 @@ def test_only_what_is_there_is_drawn(
     for name, kind in FIGURES.items():
         monkeypatch.setitem(FIGURES, name, kind._replace(draw=lambda *_: Figure()))
     _store(scenario, tmp_path, ["simulate", "recover"])
-    paths = draw_all(scenario, tmp_path, Selection(cases=["y", "z"]))
+    paths = _draw(scenario, tmp_path, cases=["y", "z"])
     assert {name.removesuffix(".svg") for name in _names(paths) if name.endswith(".svg")} == {
         f"{figure}-{case}-only"
         for figure in ("raw_quaternion", "recovered_quaternion")
@@ -136,7 +150,7 @@ def test_only_what_is_there_is_drawn(
 
 def test_nothing_to_draw_is_told(scenario: LoadedScenario, tmp_path: Path) -> None:
     with pytest.raises(UserError, match="run: debrisest sweep") as caught:
-        list(draw_all(scenario, tmp_path, Selection()))
+        _draw(scenario, tmp_path)
     assert len(caught.value.problems) == 1
     assert not (tmp_path / "spin").exists()
 
@@ -147,13 +161,13 @@ def test_results_that_are_out_of_date_are_left_out(
     _store(scenario, tmp_path, ["simulate", "recover", "filter", "assess"])
     changed = load_scenario(scenario.path, ["sensors.points.noise_m=0.1"])
     with pytest.raises(UserError):
-        list(draw_all(changed, tmp_path, Selection()))
+        _draw(changed, tmp_path)
 
 
 def test_the_first_run_that_did_not_fail(scenario: LoadedScenario, tmp_path: Path) -> None:
     failing = {"recover": 1, "filter": 2}
     _store(scenario, tmp_path, ["simulate", "recover", "filter"], failing)
-    sources = list(single_runs(scenario, plan(scenario, tmp_path, Selection()), {}))
+    sources = list(single_runs(scenario, _there(scenario, tmp_path), {}))
     assert [source.names for source in sources] == [(case, "only") for case in "xyz"]
     assert sources[0].context == "spin, case x, estimator only, run 2"
     assert sources[0].data["rate_b"].shape == (12, 3)
@@ -164,20 +178,20 @@ def test_the_first_run_that_did_not_fail(scenario: LoadedScenario, tmp_path: Pat
 def test_no_run_no_figure(scenario: LoadedScenario, tmp_path: Path) -> None:
     _store(scenario, tmp_path, ["simulate"], {"simulate": 3})
     _store(scenario, tmp_path, ["recover"], {"recover": 3})
-    assert list(single_runs(scenario, plan(scenario, tmp_path, Selection()), {})) == []
+    assert list(single_runs(scenario, _there(scenario, tmp_path), {})) == []
 
 
 def test_runs_of_a_second_file(scenario: LoadedScenario, tmp_path: Path) -> None:
     many = load_scenario(scenario.path, ["runs=22"])
     _store(many, tmp_path, ["simulate", "recover"], {"recover": 20})
     steps = plan(many, tmp_path, Selection(cases=["x"]))
-    steps = [step for step in steps if step.first_run == 0]
-    assert list(single_runs(many, steps, {})) == []
-    for step in plan(many, tmp_path, Selection(cases=["x"])):
-        if step.first_run == 20 and step.stage == "recover":
-            attributes = {"stage_key": step.key, "runs": step.runs, "inputs": "{}"}
-            store.write(step.path, _made_up("recover", step.runs), attributes)
-    (source,) = single_runs(many, plan(many, tmp_path, Selection(cases=["x"])), {})
+    first = [step for step in steps if step.address.first_run == 0]
+    assert list(single_runs(many, _there(many, tmp_path, first), {})) == []
+    for step in steps:
+        if step.address.first_run == 20 and step.address.stage == "recover":
+            store.write(step.path, _made_up("recover", step.runs), _attributes(step))
+    steps = plan(many, tmp_path, Selection(cases=["x"]))
+    (source,) = single_runs(many, _there(many, tmp_path, steps), {})
     assert source.context.endswith("run 20")
 
 
@@ -186,7 +200,7 @@ def _result(rates: Array, times: Array = TIMES, failures: dict[int, str] | None 
     error = np.repeat(np.radians(rates)[:, None], len(times), axis=1)
     errors = {name: error[..., index] for index, name in enumerate(QUANTITIES)}
     errors["rate"] = np.linalg.norm(error, axis=-1)
-    return Result(errors, times, 12.0, failures or {}, len(rates))
+    return Result(errors, times, failures or {}, len(rates))
 
 
 def test_diverged_failed_and_infinite_runs_are_left_out_and_counted(
@@ -242,7 +256,7 @@ def test_figures_of_each_case_take_what_there_is(
     kind = Kind(draw, ("rate_1",), of_all_runs=True, of_each_case=True, also=("rate_2", "nothing"))
     monkeypatch.setattr("debrisest.show.plots.draw.FIGURES", {"each": kind})
     _store(scenario, tmp_path, ["simulate", "recover", "filter", "assess"])
-    paths = list(draw_all(scenario, tmp_path, Selection()))
+    paths = _draw(scenario, tmp_path)
     assert _names(paths) == {f"each-{case}-only.{f}" for case in "xyz" for f in ("png", "svg")}
     assert list(drawn) == [
         f"spin, estimator only, case {case}, 3 runs; left out: 0 diverged" for case in "xyz"
@@ -252,9 +266,9 @@ def test_figures_of_each_case_take_what_there_is(
 
 def test_a_run_whose_filter_diverged_is_said_so(scenario: LoadedScenario, tmp_path: Path) -> None:
     _store(scenario, tmp_path, ["simulate", "recover", "filter", "assess"])
-    steps = plan(scenario, tmp_path, Selection())
-    results = load_results(steps) | {("y", "only"): _result(np.full((3, 3), 5.0))}
-    x, y, _ = single_runs(scenario, steps, results)
+    results = _there(scenario, tmp_path)
+    errors = assessed(results) | {("y", "only"): _result(np.full((3, 3), 5.0))}
+    x, y, _ = single_runs(scenario, results, errors)
     assert x.context.endswith("run 0")
     assert y.context.endswith("run 0 (its filter diverged)")
 

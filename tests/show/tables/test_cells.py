@@ -14,10 +14,10 @@ import pytest
 from scipy.stats import chi2
 
 from debrisest.errors import UserError
+from debrisest.results.assessed import Result
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.show.tables.cells import cells, unexpected
 from debrisest.show.tables.render import render
-from debrisest.show.tables.results import Result
 
 HEADER = (
     "table,case,estimator,quantity,unit,statistic,window,published,measured,ci_low,ci_high,bound,"
@@ -41,7 +41,7 @@ def result(rate: list[float], pitch: list[float], failures: dict[int, str] | Non
         "recovered_pitch": 2 * np.array(pitch),
     }
     errors = {name: DEG * np.repeat(v[:, None], 60, axis=1) for name, v in constant.items()}
-    return Result(errors, TIMES, 60.0, failures or {}, len(rate))
+    return Result(errors, TIMES, failures or {}, len(rate))
 
 
 GOOD = result([1.0, 2.0, 3.0], [0.1, 0.2, 0.3])

@@ -1,17 +1,22 @@
-"""The assessed errors of a scenario, as far as they are there and up to date."""
+"""The errors of all runs of one case and estimator, and the figures that tables make of them."""
 
-from collections.abc import Container, Iterable
-from typing import NamedTuple
+from collections.abc import Collection, Iterable, Mapping
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data
 from debrisest.assessment.consistency import freedom_of_runs
 from debrisest.assessment.statistics import per_run, window_mask
-from debrisest.results import store
-from debrisest.run.plan import SIMULATED, Step
+from debrisest.results.results import Results
 from debrisest.scenario.schema import Divergence, window_of
 from debrisest.vocabulary import VOCABULARY, table_scale
+
+SIMULATED = "-"
+"""Stands for the estimator in cells of what was simulated; no estimator can have this name."""
+
+_OF_FILES = {"run", "time_s", "failure"}
+"""What every file holds beside its own datasets."""
 
 
 class Result(NamedTuple):
@@ -22,7 +27,6 @@ class Result(NamedTuple):
 
     errors: Data
     times: Array
-    duration: float
     failures: dict[int, str]
     runs: int
 
@@ -39,7 +43,7 @@ class Result(NamedTuple):
         """Return one figure per run (run,), in the unit of the tables; NaN where it failed."""
         if dataset not in self.errors:
             return np.full(self.runs, np.nan)
-        inside = window_mask(self.times, window_of(window, self.duration))
+        inside = window_mask(self.times, window_of(window, float(self.times[-1])))
         return per_run(statistic, self.errors[dataset], inside) * table_scale(dataset)
 
     def freedom(self, dataset: str, statistic: str, window: str) -> Array:
@@ -60,7 +64,7 @@ class Result(NamedTuple):
         law = VOCABULARY[dataset].chi_square
         if law is None or law.freedom not in self.errors:
             return None
-        inside = window_mask(self.times, window_of(window, self.duration))
+        inside = window_mask(self.times, window_of(window, float(self.times[-1])))
         return np.nan_to_num(self.errors[law.freedom][:, inside])
 
     def diverged(self, rules: Iterable[Divergence]) -> BoolArray:
@@ -72,43 +76,26 @@ class Result(NamedTuple):
         return lost & self.good
 
 
-def load_results(
-    steps: Iterable[Step], simulated: Iterable[str] = ()
-) -> dict[tuple[str, str], Result]:
-    """Return the results by (case, estimator) of which every chunk is up to date.
+Assessed: TypeAlias = Mapping[tuple[str, str], Result]
+"""Results by case and estimator."""
+
+
+def assessed(results: Results, simulated: Collection[str] = ()) -> dict[tuple[str, str], Result]:
+    """Return what was assessed, by case and estimator.
 
     The datasets ``simulated`` of the simulations come under the estimator SIMULATED.
     """
-    wanted = {"run", "time_s", "failure", *simulated}
-    chunks: dict[tuple[str, str], list[Step]] = {}
-    for step in steps:
-        if step.stage == "assess":
-            chunks.setdefault((step.case.name, step.estimator), []).append(step)
-        elif step.stage == "simulate" and simulated:
-            chunks.setdefault((step.case.name, SIMULATED), []).append(step)
-    return {
-        key: _joined(parts, wanted if key[1] == SIMULATED else VOCABULARY)
-        for key, parts in chunks.items()
-        if not any(step.reason for step in parts)
-    }
+    found: dict[tuple[str, str], Result] = {}
+    for case in results.cases:
+        if simulated and results.stages(case):
+            found[case, SIMULATED] = _result(results.load(case, names={*_OF_FILES, *simulated}))
+        for estimator in results.estimators(case):
+            if "assess" in results.stages(case, estimator):
+                found[case, estimator] = _result(results.load(case, estimator, "assess"))
+    return found
 
 
-def _joined(steps: list[Step], names: Container[str]) -> Result:
-    parts = [store.read(step.path, step.runs, names) for step in steps]
-    runs = sum(step.runs for step in steps)
-    reasons = [str(why) for part in parts for why in part["failure"]]
-    names = {name for part in parts for name in part} - {"run", "time_s", "failure"}
-    return Result(
-        errors={name: _concatenated(name, parts) for name in sorted(names)},
-        times=parts[0]["time_s"],
-        duration=steps[0].case.scenario.duration_s,
-        failures={run: why for run, why in enumerate(reasons) if why},
-        runs=runs,
-    )
-
-
-def _concatenated(name: str, parts: list[Data]) -> Array:
-    shape = next(part[name].shape[1:] for part in parts if name in part)
-    return np.concatenate(
-        [part.get(name, np.full((len(part["run"]), *shape), np.nan)) for part in parts]
-    )
+def _result(data: Data) -> Result:
+    failures = {run: why for run, why in enumerate(data["failure"].tolist()) if why}
+    errors = {name: values for name, values in data.items() if name not in _OF_FILES}
+    return Result(errors, data["time_s"], failures, len(data["run"]))

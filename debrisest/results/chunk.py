@@ -1,0 +1,32 @@
+"""One file of results: what is known of it, and its data when they are asked for."""
+
+from collections.abc import Container
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from debrisest.arrays import Data
+from debrisest.errors import UserError
+from debrisest.results import store
+from debrisest.results.address import Address
+from debrisest.vocabulary import VOCABULARY
+
+
+class Chunk(NamedTuple):
+    """A file of results: what it holds, without its data."""
+
+    address: Address
+    path: Path
+    runs: int
+    """How many runs of it are read."""
+    attributes: dict[str, Any]
+
+    def read(
+        self, names: Container[str] = VOCABULARY, first: int = 0, runs: int | None = None
+    ) -> Data:
+        """Return datasets of its runs ``first`` up to ``runs``; raise UserError if damaged."""
+        last = self.runs if runs is None else min(runs, self.runs)
+        try:
+            return store.read(self.path, last, names, first)
+        except (OSError, RuntimeError, KeyError):
+            damaged = store.Condition.DAMAGED.value
+            raise UserError(f"{self.path} is {damaged}; a sweep computes it again") from None

@@ -1,0 +1,39 @@
+"""Results opened from their folder alone, without the scenario's file or a plan."""
+
+from pathlib import Path
+
+from debrisest.errors import UserError
+from debrisest.results import store
+from debrisest.results.address import Address
+from debrisest.results.chunk import Chunk
+from debrisest.results.results import Results
+
+
+def open_results(folder: Path | str) -> Results:
+    """Return the results of a scenario from its folder alone, such as ``results/first_steps``.
+
+    Attributes are read at once, data when they are asked for. Raises UserError where there are no
+    results.
+    """
+    results = find_results(Path(folder))
+    if not results.chunks:
+        told = [f"{folder}: no results of a scenario there", *results.left_out]
+        inner = sorted({path.parent.parent.name for path in Path(folder).glob("*/*/*.h5")})
+        hint = [f"open one of the folders in it: {', '.join(inner)}"] * bool(inner)
+        raise UserError("; ".join([*told, *hint]))
+    return results
+
+
+def find_results(folder: Path) -> Results:
+    """Return what there is of a scenario's results in a folder, which may be nothing."""
+    chunks: list[Chunk] = []
+    left_out: list[str] = []
+    for path in sorted(folder.glob("*/*.h5")):
+        found, address = store.inspect(path, numbers=False), Address.of(path)
+        if found.condition is not store.Condition.WHOLE:
+            left_out.append(f"{path} is {found.condition.value}")
+        elif address is None:
+            left_out.append(f"{path} is not named like a file of results")
+        else:
+            chunks.append(Chunk(address, path, int(found.attributes["runs"]), found.attributes))
+    return Results(folder, tuple(sorted(chunks, key=lambda one: one.address.order)), left_out)
