@@ -94,16 +94,17 @@ def paired_errors(
     """
     last, blocks = measured.shape[1] - 1, []
     for begin in range(0, len(truth), _BLOCK):
-        runs = slice(begin, begin + _BLOCK)
-        states, sensitivity = model.trajectory(truth[runs], 0, last)
-        shown, derivative = model.rows(states, sensitivity, 0, np.arange(last + 1))
-        transition = [model.transition(sensitivity[:, k], 0, k) for k in range(last + 1)]
+        runs = np.arange(begin, min(begin + _BLOCK, len(truth)))
+        part = model.of(runs)
+        states, sensitivity = part.trajectory(truth[runs], 0, last)
+        shown, derivative = part.rows(states, sensitivity, 0, np.arange(last + 1))
+        transition = [part.transition(sensitivity[:, k], 0, k) for k in range(last + 1)]
         bound = efficient(
             np.stack(transition, axis=1),
             derivative,
             _without_outliers(measured[runs] - shown, model.sigma),
             model.sigma,
-            model.plain_difference(prior[runs], truth[runs]),
+            part.plain_difference(prior[runs], truth[runs]),
             covariance,
         )
         blocks.append(

@@ -1,5 +1,6 @@
 """Which measurements are too unlikely to be used, and when to doubt the filter instead of them."""
 
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
@@ -81,6 +82,12 @@ class Gatekeeper:
             shut = self._suspect((~wider).sum(-1), judged[reopened])
             passed[reopened] = wider | shut[:, None]
         return Verdict(measured & passed[:, self._group], reopened, factor)
+
+    def of(self, runs: IntArray) -> "Gatekeeper":
+        """Return the keeper of some runs, with what it remembers of them."""
+        part = copy(self)
+        part._streak, part._start = self._streak[runs], self._start[runs]
+        return part
 
     def doubted(self, covariance: Array, factor: Array) -> Array:
         """Predicted covariance (run, n_e, n_e) times `factor`, in no direction above the start."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.covariance import solve, square_root
-from debrisest.filters.history import History, HistoryWriter
+from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.model import Model, add, subtract
 
@@ -50,7 +50,7 @@ def unscented(
     spread: UnscentedParameters = _SPREAD,
     keep: Sequence[int] = (),
     redraw: bool = False,
-) -> History:
+) -> Estimates:
     """Filter a batch of runs (Biondi et al. 2017, Eqs 32-42).
 
     `state` (run, n) and `covariance` (run, n_e, n_e) are the prior of epoch 0, which measurement 0
@@ -71,14 +71,21 @@ def unscented(
     """
     rule = _rule(model, covariance.shape[-1], spread)
     epochs = measurements.shape[1]
-    writer = HistoryWriter(model, state, covariance, epochs, keep)
+    names = model.error_names
+    writer = EstimatesWriter(names, state, covariance, epochs, keep, totals=["repairs"])
+    going = writer.runs
     with np.errstate(all="ignore"):
         for k in range(epochs):
-            state, covariance = writer.live(state, covariance)
+            if len(going) < len(state):
+                model, state, covariance = model.of(going), state[going], covariance[going]
+                measurements = measurements[going]
+            if len(going) == 0:
+                break
             predicted = _predict(model, rule, state, covariance, k, redraw)
             state, covariance, nis, dof = _update(model, rule, predicted, measurements[:, k], k)
-            writer.record(k, state, covariance, nis, dof, predicted.repairs)
-    return writer.history()
+            figures = {"nis": nis, "nis_dof": dof, "repairs": predicted.repairs}
+            going = writer.record(k, state, covariance, figures)
+    return writer.estimates()
 
 
 def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _Rule:

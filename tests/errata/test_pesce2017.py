@@ -205,8 +205,8 @@ def test_a_tolerance_of_one_percent_iterates_at_the_start_only(tolerance, iterat
         tolerance=tolerance,
         stop="relative_norm",
     )
-    assert history.iterations[:, 1].mean() > 1.5
-    assert bool(history.iterations[:, 5:].mean() > 1.5) is iterated
+    assert history.counts["updates"][:, 1].mean() > 1.5
+    assert bool(history.counts["updates"][:, 5:].mean() > 1.5) is iterated
 
 
 def test_table_1_lies_below_the_bound_of_the_printed_noise():

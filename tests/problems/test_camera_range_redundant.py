@@ -137,7 +137,7 @@ def test_the_filter_improves_on_its_start_and_keeps_a_factor(seed: int) -> None:
     cubature = UnscentedParameters(1.0, 0.0, 0.0)
     covariance = np.diag(sigma**2)[None]
     found = unscented(model, guess[None], covariance, measured[None], cubature, redraw=True)
-    assert found.repairs[0] == 0
+    assert found.counts["repairs"][0] == 0
     error = np.abs(found.state[0, -1] - states[-1])
     assert np.linalg.norm(error[VELOCITY]) < 0.5 * np.linalg.norm((guess - states[0])[VELOCITY])
     assert np.median(error[CORE:]) < 0.05

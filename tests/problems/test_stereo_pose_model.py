@@ -154,6 +154,6 @@ def test_a_filter_can_be_handed_the_model():
     model = additive.additive_model(known, 1e-12 * np.eye(n), 1e-10 * np.eye(36))
     start = np.tile(1e-8 * np.eye(n), (3, 1, 1))
     history = unscented(model, truth[:, 0] + 1e-4, start, shown)
-    assert np.all(history.status == 0)
+    assert np.all(history.status == "finished")
     assert len(model.error_names) == n
     assert np.abs(history.state[:, -1, :3] - truth[:, -1, :3]).max() < 1e-3

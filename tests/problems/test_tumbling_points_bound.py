@@ -82,7 +82,6 @@ def test_the_truth_is_in_the_features_own_axes(runs):
     )
     assert turn.magnitude() < 1e-12
     np.testing.assert_allclose(truth[5, 0, 4:12], start[4:12], rtol=0, atol=1e-12)
-    np.testing.assert_array_equal(truth[:, 0, 12], np.arange(len(truth)))
 
 
 def test_the_information_is_that_of_the_attitude_of_each_epoch(runs, integrated, nudged):

@@ -8,7 +8,8 @@ import numpy as np
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh, update
-from debrisest.filters.history import History, HistoryWriter, Tally
+from debrisest.filters.estimates import Estimates, EstimatesWriter
+from debrisest.filters.runs import take
 
 
 class Rule(NamedTuple):
@@ -23,12 +24,16 @@ class Rule(NamedTuple):
     truth: Array | None
     """What to linearise about instead, (run, time, n)."""
 
+    def of(self, runs: IntArray) -> "Rule":
+        """Return the settings for some runs."""
+        return self if self.truth is None else self._replace(truth=self.truth[runs])
+
 
 class _Seen(NamedTuple):
     """What the target's track made of the detections of an epoch, each (run,)."""
 
     nis: Array
-    dof: IntArray
+    nis_dof: IntArray
     rejected: IntArray
     validated: IntArray
 
@@ -41,7 +46,7 @@ class _Seen(NamedTuple):
         outside = judged.present[:, 0] & ~judged.valid[:, 0]
         return _Seen(
             self.nis + squared.sum(-1),
-            self.dof + d * (detected > 0.0).sum(-1),
+            self.nis_dof + d * (detected > 0.0).sum(-1),
             self.rejected + d * outside.sum((-2, -1)),
             self.validated + judged.valid[:, 0].sum((-2, -1)),
         )
@@ -54,14 +59,19 @@ def filtered(
     scans: Array,
     rule: Rule,
     keep: Sequence[int],
-) -> History:
-    """Return the history of track 0; `state` (run, track, n), else as `associated`."""
-    writer = HistoryWriter(model, state[:, 0], covariance[:, 0], scans.shape[1], keep)
-    repairs = np.zeros(len(state), dtype=np.int64)
-    tracks, nominal = Tracks(state, covariance), state
+) -> Estimates:
+    """Return the estimates of track 0; `state` (run, track, n), else as `associated`."""
+    names, epochs, counts = model.error_names, scans.shape[1], {"rejected": 0, "validated": 0}
+    start = state[:, 0], covariance[:, 0]
+    writer = EstimatesWriter(names, *start, epochs, keep, counts, totals=["repairs"])
+    tracks, nominal, going = Tracks(state, covariance), state, writer.runs
     with np.errstate(all="ignore"):
-        for k in range(scans.shape[1]):
-            tracks, nominal = _live(writer, tracks, nominal)
+        for k in range(epochs):
+            if len(going) < len(nominal):
+                model, tracks, nominal = model.of(going), take(tracks, going), nominal[going]
+                scans, rule = scans[going], rule.of(going)
+            if len(going) == 0:
+                break
             if k > 0:
                 tracks, nominal = _predict(model, tracks, nominal, k - 1)
             if rule.truth is not None:
@@ -69,22 +79,9 @@ def filtered(
             tracks, seen = _look(model, tracks, nominal, scans[:, k], rule, k)
             if rule.relinearise > 0 and (k + 1) % rule.relinearise == 0:
                 nominal = tracks.state
-            tally = Tally(
-                *(np.ones_like(repairs), seen.rejected, np.zeros_like(repairs)), seen.validated
-            )
             target = tracks.state[:, 0], tracks.covariance[:, 0]
-            writer.record(k, *target, seen.nis, seen.dof, repairs, tally)
-    return writer.history()
-
-
-def _live(writer: HistoryWriter, tracks: Tracks, nominal: Array) -> tuple[Tracks, Array]:
-    """Replace the target of diverged runs by what the writer has for them."""
-    if writer.alive.all():
-        return tracks, nominal
-    state, covariance = writer.live(tracks.state[:, 0], tracks.covariance[:, 0])
-    live = Tracks(tracks.state.copy(), tracks.covariance.copy())
-    live.state[:, 0], live.covariance[:, 0] = state, covariance
-    return live, np.where(writer.alive[:, None, None], nominal, live.state)
+            going = writer.record(k, *target, seen._asdict())
+    return writer.estimates()
 
 
 def _predict(model: ScanModel, tracks: Tracks, nominal: Array, k: int) -> tuple[Tracks, Array]:

@@ -12,7 +12,7 @@ from debrisest.filters.association.recursion import Rule, filtered
 from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.update import Weigh
 from debrisest.filters.association.weights import Validation, nearest, probabilistic
-from debrisest.filters.history import History
+from debrisest.filters.estimates import Estimates
 
 Method = Literal["probabilistic", "nearest", "known"]
 
@@ -29,7 +29,7 @@ def associated(
     relinearise: int = 1,
     truth: Array | None = None,
     keep: Sequence[int] = (),
-) -> History:
+) -> Estimates:
     """Filter a batch of runs, each with one target.
 
     `state` (run, n) and `covariance` (run, n, n) are the prior of epoch 0, which scan 0 updates;
@@ -68,7 +68,7 @@ def jointly_associated(
     *,
     stacked: bool = False,
     keep: Sequence[int] = (),
-) -> History:
+) -> Estimates:
     """Filter a batch of runs, each with a target and neighbours that give detections as well.
 
     As `associated`, with `state` (run, track, n) and `covariance` (run, track, n, n): track 0 is

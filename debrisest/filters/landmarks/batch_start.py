@@ -9,7 +9,7 @@ from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.landmarks.cost import Prior, Unknowns
 from debrisest.filters.landmarks.growing_windows import Fit, Window, fit, fresh
 from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
-from debrisest.filters.replay.evidence import take
+from debrisest.filters.runs import put, take
 from debrisest.filters.scaled import scaled_inverse
 from debrisest.outcome import Outcome
 
@@ -109,10 +109,10 @@ def batch_start(
         if len(bad) == 0:
             break
         part = task.of(bad)
-        new, beside = _solve(part, _redrawn(part, parameters[bad], covariance[bad], attempt))
+        new, second = _solve(part, _redrawn(part, parameters[bad], covariance[bad], attempt))
         won = new.found.value < best.found.value[bad]
-        best.put(bad[won], new.of(np.flatnonzero(won)))
-        other.put(bad[won], beside.of(np.flatnonzero(won)))
+        put(best, bad[won], take(new, np.flatnonzero(won)))
+        put(other, bad[won], take(second, np.flatnonzero(won)))
         restarts[bad] = attempt + 1
     last = np.full(runs, batch.windows[-1].last)
     gap = _gap(best, other)
@@ -131,20 +131,20 @@ def _solve(task: _Problem, parameters: Array) -> tuple[Fit, Fit]:
     best, other = _ordered(best, _mirrored(task, best, batch.windows[2::2]))
     bad = np.flatnonzero(~(best.ratio < batch.limit))
     if len(bad) and batch.mirrored:
-        part, wrong = task.of(bad), best.of(bad)
+        part, wrong = task.of(bad), take(best, bad)
         for old, new in zip(
             (best, other), _ordered(wrong, _mirrored(part, wrong, batch.windows[1::2]))
         ):
-            old.put(bad, new)
+            put(old, bad, new)
     return best, other
 
 
 def _ordered(best: Fit, other: Fit) -> tuple[Fit, Fit]:
     """Both fits, the one with the lower cost first."""
     swapped = np.flatnonzero(other.found.value < best.found.value)
-    former = best.of(swapped)
-    best.put(swapped, other.of(swapped))
-    other.put(swapped, former)
+    former = take(best, swapped)
+    put(best, swapped, take(other, swapped))
+    put(other, swapped, former)
     return best, other
 
 
@@ -152,7 +152,7 @@ def _mirrored(task: _Problem, best: Fit, windows: Sequence[Window]) -> Fit:
     """Fit that begins at the mirror; where it is hopeless, it ends early, with infinite cost."""
     batch = task.batch
     runs = np.arange(len(best.ratio))
-    result = best.of(runs)
+    result = take(best, runs)
     result.found.value[:] = np.inf
     if not batch.mirrored:
         return result
@@ -166,11 +166,11 @@ def _mirrored(task: _Problem, best: Fit, windows: Sequence[Window]) -> Fit:
         )
         excess = found.found.freedom * (found.ratio - best.ratio[runs])
         kept = np.flatnonzero(excess < _PRUNE)
-        found, runs = found.of(kept), runs[kept]
+        found, runs = take(found, kept), runs[kept]
         if len(runs) == 0:
             return result
         at = found.at
-    result.put(runs, found)
+    put(result, runs, found)
     return result
 
 
@@ -183,12 +183,12 @@ def _extend(task: _Problem, best: Fit, other: Fit, runs: IntArray, gap: Array) -
     other.found.value[runs[~both]] = np.inf
     for old, chosen in ((best, runs), (other, runs[both])):
         if len(chosen):
-            part, begin = task.of(chosen), old.of(chosen)
+            part, begin = task.of(chosen), take(old, chosen)
             found = fit(
                 *(part.model, part.sights, begin.at, begin.prior),
                 *(batch.extended, batch.iterations, batch.robust),
             )
-            old.put(chosen, found)
+            put(old, chosen, found)
     _ordered(best, other)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.landmarks.cost import Cost, Prior, Unknowns, cost
 from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
-from debrisest.filters.replay.evidence import put, take
+from debrisest.filters.runs import put, take
 from debrisest.filters.scaled import scaled_solve
 
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
@@ -44,17 +44,6 @@ class Fit(NamedTuple):
     def ratio(self) -> Array:
         """Cost per degree of freedom (run,), about one for the right minimum."""
         return np.asarray(self.found.value / np.maximum(self.found.freedom, 1))
-
-    def of(self, runs: IntArray) -> "Fit":
-        """Return the fits of some runs."""
-        return Fit(take(self.at, runs), take(self.prior, runs), take(self.found, runs))
-
-    def put(self, runs: IntArray, other: "Fit") -> None:
-        """Replace those of some runs, in place."""
-        for mine, new in zip(
-            (self.at, self.prior, self.found), (other.at, other.prior, other.found)
-        ):
-            put(mine, runs, new)
 
 
 def fresh(model: LandmarkModel, parameters: Array, prior: Prior) -> tuple[Unknowns, Prior]:

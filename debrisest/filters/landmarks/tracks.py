@@ -25,8 +25,6 @@ class Tracks(NamedTuple):
     """Frames that passed the gate since the insertion."""
     misses: IntArray
     """Rejections in a row."""
-    dropped: IntArray
-    """How often it was dropped."""
 
     @property
     def confirmed(self) -> BoolArray:
@@ -37,7 +35,7 @@ class Tracks(NamedTuple):
 def begin(present: BoolArray) -> Tracks:
     """Tracks of landmarks that a batch has confirmed, or of none."""
     none = np.zeros(present.shape, dtype=np.int64)
-    return Tracks(present.copy(), CONFIRMING * present, none, none.copy())
+    return Tracks(present.copy(), CONFIRMING * present, none)
 
 
 def judged(tracks: Tracks, shown: BoolArray, accepted: BoolArray) -> Tracks:
@@ -46,12 +44,7 @@ def judged(tracks: Tracks, shown: BoolArray, accepted: BoolArray) -> Tracks:
     hits = tracks.hits + accepted
     misses = np.where(shown, (tracks.misses + 1) * rejected, tracks.misses)
     lost = rejected & ((hits < CONFIRMING) | (misses >= PATIENCE))
-    return Tracks(
-        tracks.present & ~lost,
-        np.where(lost, 0, hits),
-        np.where(lost, 0, misses),
-        tracks.dropped + lost,
-    )
+    return Tracks(tracks.present & ~lost, np.where(lost, 0, hits), np.where(lost, 0, misses))
 
 
 def without(belief: Belief, lost: BoolArray) -> Belief:

@@ -34,10 +34,10 @@ class Frame(NamedTuple):
     """Figures of a frame, (run,) each, and which landmarks were accepted, (run, N)."""
 
     nis: Array
-    dof: IntArray
+    nis_dof: IntArray
     rejected: IntArray
     accepted: BoolArray
-    iterations: IntArray
+    updates: IntArray
 
 
 class _Linear(NamedTuple):

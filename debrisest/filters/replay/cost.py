@@ -1,9 +1,8 @@
-"""Costs of whole motions: that of an estimate, and of another motion beside it."""
+"""Cost of a whole motion."""
 
 import numpy as np
 
-from debrisest.arrays import Array, IntArray
-from debrisest.filters.replay.estimates import Estimates
+from debrisest.arrays import Array
 from debrisest.filters.replay.evidence import Evidence
 from debrisest.filters.replay.replay_model import ReplayModel
 
@@ -17,22 +16,3 @@ def cost_of(model: ReplayModel, evidence: Evidence, state: Array, last: int) -> 
     offset = model.plain_difference(evidence.prior, state)[..., None]
     prior = np.swapaxes(offset, -1, -2) @ evidence.information @ offset
     return np.asarray(prior[:, 0, 0] + (residual**2).sum((-2, -1)))
-
-
-def write_costs(
-    model: ReplayModel,
-    result: Estimates,
-    epoch: int,
-    runs: IntArray,
-    evidence: Evidence,
-    starts: tuple[Array, Array | None],
-) -> None:
-    """Write the costs of some runs' two motions, the estimate's and the other, from epoch 0 on.
-
-    ``evidence`` holds those runs only, the other motion all: what the weights leave out counts in
-    neither cost.
-    """
-    estimate, beside = starts
-    result.cost[runs, epoch] = cost_of(model, evidence, estimate, epoch)
-    if beside is not None:
-        result.cost_beside[runs, epoch] = cost_of(model, evidence, beside[runs], epoch)

@@ -4,11 +4,11 @@ The cost is twice the negative logarithm of the posterior density: the normalise
 prior's error and of the residuals. Its minimum is the maximum a posteriori estimate.
 """
 
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.arrays import Array, BoolArray
 from debrisest.filters.replay.replay_model import ReplayModel
 from debrisest.filters.scaled import scaled_inverse
 
@@ -96,18 +96,3 @@ def normal_equations(
     weighted = (weight * residual).reshape(runs, -1, 1)
     transposed = np.swapaxes(flat, -1, -2)
     return transposed @ flat, (transposed @ weighted)[..., 0], (weighted**2).sum((-2, -1))
-
-
-Arrays = TypeVar("Arrays", bound=tuple[Any, ...])
-
-
-def take(arrays: Arrays, runs: IntArray) -> Arrays:
-    """Return some runs of all the arrays."""
-    return type(arrays)(*(array[runs] for array in arrays))
-
-
-def put(arrays: Arrays, runs: IntArray, part: Arrays) -> Arrays:
-    """Replace some runs of all the arrays, in place."""
-    for array, values in zip(arrays, part):
-        array[runs] = values
-    return arrays

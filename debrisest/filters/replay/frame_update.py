@@ -25,7 +25,7 @@ class Frame(NamedTuple):
     """Figures of one epoch, (run,) each."""
 
     nis: Array
-    dof: IntArray
+    nis_dof: IntArray
     rejected: IntArray
 
 
@@ -50,9 +50,10 @@ def update(
     runs = np.arange(len(state))
     for iteration in range(iterations):
         at = state[runs]
-        states, sensitivity = model.trajectory(at, k, k)
-        shown, derivative = model.rows(states, sensitivity, k, np.array([k]))
-        back = model.inverse_chart(at)
+        part = model.of(runs)
+        states, sensitivity = part.trajectory(at, k, k)
+        shown, derivative = part.rows(states, sensitivity, k, np.array([k]))
+        back = part.inverse_chart(at)
         rows = derivative / model.sigma[:, None] @ back[:, None]
         residual = evidence.measured[runs, frame] - shown / model.sigma
         if gate and iteration == 0:
@@ -60,13 +61,13 @@ def update(
             evidence.weight[:, frame] *= weights.innovation_gate(residual, rows, spread)
         terms = normal_equations(rows, residual, evidence.weight[runs, frame])
         total = predicted.information[runs] + terms[0]
-        offset = model.difference(predicted.state[runs], at)
+        offset = part.difference(predicted.state[runs], at)
         right = terms[1] + (predicted.information[runs] @ offset[..., None])[..., 0]
         step = scaled_solve(total, right)
         decrement = (step * right).sum(-1)
         if iteration == 0:
             nis = terms[2] - decrement
-        state[runs], information[runs] = model.retract(at, step), total
+        state[runs], information[runs] = part.retract(at, step), total
         runs = runs[~(decrement < _FRAME_CONVERGED)]
         if len(runs) == 0:
             break

@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
-from debrisest.filters.replay.evidence import Evidence, Linearization, linearize, put, take
+from debrisest.filters.replay.evidence import Evidence, Linearization, linearize
 from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.runs import put, take
 from debrisest.filters.scaled import scaled_solve
 
 CONVERGED = 1e-2
@@ -50,11 +51,12 @@ def gauss_newton(
         runs = np.flatnonzero(active)
         if len(runs) == 0:
             break
+        part = model.of(runs)
         trial = linearize(
-            model, take(evidence, runs), move(model, best.state[runs], step[runs]), last
+            part, take(evidence, runs), move(part, best.state[runs], step[runs]), last
         )
         better = trial.cost <= best.cost[runs]
-        best = put(best, runs[better], take(trial, np.flatnonzero(better)))
+        put(best, runs[better], take(trial, np.flatnonzero(better)))
         damping[runs] = _next_damping(damping[runs], better)
         step[runs], decrement[runs] = _step(
             take(best, runs), evidence.information[runs], damping[runs]

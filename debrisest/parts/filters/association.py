@@ -9,10 +9,9 @@ from debrisest.arrays import Array
 from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import associated, jointly_associated
 from debrisest.filters.association.weights import Misses, Validation
-from debrisest.filters.history import History
-from debrisest.parts.filters.filtered import filtered
+from debrisest.filters.estimates import Estimates
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
-from debrisest.roles import Filtered, FilterPart, Given, Positive
+from debrisest.roles import FilterPart, Given, Positive
 
 Probability = Annotated[float, Field(gt=0, le=1)]
 
@@ -49,9 +48,9 @@ class AssociationFilter(_Validating):
             raise ValueError("relinearised_s goes with linearised: start")
         return self
 
-    def run(self, model: ScanModel, given: Given) -> Filtered:
+    def run(self, model: ScanModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
-        history = associated(
+        found = associated(
             *(model, given.state, given.covariance, given.measured, self.validation),
             method=self.method,
             stacked=self.stacked,
@@ -59,7 +58,7 @@ class AssociationFilter(_Validating):
             truth=_truth(given) if self.linearised == "truth" else None,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(history)
+        return _unlabelled(found)
 
     def _every(self, step: float) -> int:
         if self.linearised == "estimate":
@@ -72,14 +71,14 @@ class JointAssociation(_Validating):
 
     kind: Literal["joint_association"]
 
-    def run(self, model: ScanModel, given: Given) -> Filtered:
+    def run(self, model: ScanModel, given: Given) -> Estimates:
         """Return the estimates of the target; the state given is (run, track, n)."""
-        history = jointly_associated(
+        found = jointly_associated(
             *(model, given.state, given.covariance, given.measured, self.validation),
             stacked=self.stacked,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(history)
+        return _unlabelled(found)
 
 
 class KnownAssociation(FilterPart):
@@ -89,14 +88,14 @@ class KnownAssociation(FilterPart):
     kind: Literal["known_association"]
     keep_s: KeptTimes = []
 
-    def run(self, model: ScanModel, given: Given) -> Filtered:
+    def run(self, model: ScanModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
-        history = associated(
+        found = associated(
             *(model, given.state, given.covariance, given.measured, Validation()),
             method="known",
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return filtered(history)
+        return _counting(found, "repairs")
 
 
 class LinearisedAtTruth(FilterPart):
@@ -109,15 +108,15 @@ class LinearisedAtTruth(FilterPart):
     kind: Literal["linearised_at_truth"]
     keep_s: KeptTimes = []
 
-    def run(self, model: ScanModel, given: Given) -> Filtered:
+    def run(self, model: ScanModel, given: Given) -> Estimates:
         """Return the truth moved by the errors of the efficient estimator."""
-        history = associated(
+        found = associated(
             *(model, given.state, given.covariance, given.measured, Validation()),
             method="known",
             truth=_truth(given),
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return filtered(history)
+        return _counting(found, "repairs")
 
 
 def _truth(given: Given) -> Array:
@@ -126,8 +125,13 @@ def _truth(given: Given) -> Array:
     return given.truth
 
 
-def _unlabelled(history: History) -> Filtered:
+def _unlabelled(found: Estimates) -> Estimates:
     """Without NIS, which is not chi-square where detections are chosen by their distance."""
-    return filtered(history, validated=history.validated)._replace(
-        nis=np.full_like(history.nis, np.nan), nis_dof=np.zeros_like(history.nis_dof)
+    return _counting(found, "repairs", "validated")._replace(
+        nis=np.full_like(found.nis, np.nan), nis_dof=np.zeros_like(found.nis_dof)
     )
+
+
+def _counting(found: Estimates, *names: str) -> Estimates:
+    """With these of its counts only."""
+    return found._replace(counts={name: found.counts[name] for name in names})

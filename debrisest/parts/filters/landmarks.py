@@ -8,18 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from debrisest.arrays import Array, Data
+from debrisest.arrays import Array
 from debrisest.assessment.landmark_bound import landmark_bound
 from debrisest.clock import Clock
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.landmarks.batch_start import Batch, Started, StartStatus, batch_start
 from debrisest.filters.landmarks.growing_windows import Window
-from debrisest.filters.landmarks.landmark_filter import Annealing, Landmarked, landmark_filter
+from debrisest.filters.landmarks.landmark_filter import Annealing, landmark_filter
 from debrisest.filters.landmarks.landmark_model import LandmarkModel, joined, points_of, split
 from debrisest.filters.landmarks.update import Belief, Rule
-from debrisest.filters.replay.estimates import ReplayStatus
+from debrisest.filters.status import ReplayStatus
 from debrisest.outcome import sentences
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
-from debrisest.roles import Filtered, FilterPart, Given, NonNegative, Positive
+from debrisest.roles import FilterPart, Given, NonNegative, Positive
 
 GATE = 1e-3
 """False alarms of the gate: 13.8 for a point's two pixels."""
@@ -88,7 +89,7 @@ class LandmarkBatch(_LandmarkFilter):
     def _extensions(self) -> list[tuple[float, float]]:
         return [(end, self.extended_spacing_s) for end in self.extended_s]
 
-    def run(self, model: LandmarkModel, given: Given) -> Filtered:
+    def run(self, model: LandmarkModel, given: Given) -> Estimates:
         """Return the estimates of all epochs; up to the batch's end they are the batch's own."""
         sights, held = split(model, given.measured), model.held
         with np.errstate(all="ignore"):
@@ -109,7 +110,7 @@ class LandmarkBatch(_LandmarkFilter):
             keep=kept_epochs(self.keep_s, given.clock),
         )
         counts = {"restarts": started.restarts, "fit": started.ratio}
-        return _filtered(found, _status(found, started), counts)
+        return found._replace(status=_status(found, started), counts=found.counts | counts)
 
     def _batch(self, clock: Clock) -> Batch:
         return Batch(
@@ -129,7 +130,7 @@ class LandmarkFilter(_LandmarkFilter):
     annealing: NonNegative = Field(100.0, description="noise variance times 1 + this at time zero")
     annealing_s: Positive = Field(100.0, description="time in which that falls by a factor e")
 
-    def run(self, model: LandmarkModel, given: Given) -> Filtered:
+    def run(self, model: LandmarkModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
         sights, held = split(model, given.measured), model.held
         core, freedom = model.start(model.parameters(_core(model, given.state)))
@@ -149,7 +150,7 @@ class LandmarkFilter(_LandmarkFilter):
             Annealing(self.annealing, self.annealing_s / given.clock.step),
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _filtered(found, _status(found, None), {})
+        return found._replace(status=_status(found, None))
 
 
 class LandmarkBound(FilterPart):
@@ -159,7 +160,7 @@ class LandmarkBound(FilterPart):
     kind: Literal["landmark_bound"]
     keep_s: KeptTimes = []
 
-    def run(self, model: LandmarkModel, given: Given) -> Filtered:
+    def run(self, model: LandmarkModel, given: Given) -> Estimates:
         """Return the truth moved by the errors of the efficient estimator."""
         if given.truth is None:
             raise ValueError("the bound is linearised at the truth, which is not known here")
@@ -177,7 +178,7 @@ class LandmarkBound(FilterPart):
             kept,
         )
         moved = points + bound.error[..., n_c:].reshape(points.shape)
-        return Filtered(
+        return Estimates(
             state=joined(model.retract(core, bound.error[..., :n_c]), moved),
             sigma=bound.sigma,
             covariance=bound.covariance,
@@ -202,25 +203,13 @@ def _windows(ends: Iterable[tuple[float, float]], clock: Clock) -> list[Window]:
     return list(dict.fromkeys(windows))
 
 
-def _status(found: Landmarked, started: Started | None) -> NDArray[np.str_]:
+def _status(found: Estimates, started: Started | None) -> NDArray[np.str_]:
     """How each run ended: the filter's trouble first, then the start's, then suspicions."""
-    result = found.estimates
-    half = result.nis.shape[1] // 2
-    freedom = result.nis_dof[:, half:].sum(1)
-    mean = np.nansum(result.nis[:, half:], axis=1) / np.maximum(freedom, 1)
+    half = found.nis.shape[1] // 2
+    dof = found.nis_dof[:, half:].sum(1)
+    mean = np.nansum(found.nis[:, half:], axis=1) / np.maximum(dof, 1)
     words = np.where(mean > _SUSPICIOUS, _SUSPECT, StartStatus.FOUND.sentence)
     if started is not None:
         troubled = started.status != StartStatus.FOUND
         words = np.where(troubled, sentences(started.status, StartStatus), words)
-    lost = result.status != ReplayStatus.CONVERGED
-    return np.where(lost, sentences(result.status, ReplayStatus), words)
-
-
-def _filtered(found: Landmarked, status: NDArray[np.str_], counts: Data) -> Filtered:
-    result = found.estimates
-    return Filtered(
-        *(result.state, result.sigma, result.covariance, result.kept, result.nis, result.nis_dof),
-        status=status,
-        counts=counts
-        | {"dropped": found.dropped, "updates": found.iterations, "rejected": result.rejected},
-    )
+    return np.where(found.status == ReplayStatus.CONVERGED.sentence, words, found.status)

@@ -5,14 +5,13 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from debrisest.arrays import Data
 from debrisest.assessment.bound import paired_errors
-from debrisest.filters.replay.estimates import ReplayStatus
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.replay.replay import RATIO, replay, smooth
 from debrisest.filters.replay.replay_model import ReplayModel
-from debrisest.outcome import sentences
+from debrisest.filters.status import ReplayStatus
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
-from debrisest.roles import Filtered, FilterPart, Given
+from debrisest.roles import FilterPart, Given
 
 
 class Replay(FilterPart):
@@ -26,23 +25,16 @@ class Replay(FilterPart):
     ratio: Annotated[float, Field(ge=1)] = RATIO
     keep_s: KeptTimes = []
 
-    def run(self, model: ReplayModel, given: Given) -> Filtered:
+    def run(self, model: ReplayModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
         known = given.state, given.covariance, given.measured
         keep = kept_epochs(self.keep_s, given.clock)
-        beside = None if given.truth is None else given.truth[:, 0]
-        found = replay(model, *known, ratio=self.ratio, gate=self.gate, keep=keep, beside=beside)
-        counts: Data = {"rejected": found.rejected} if self.gate else {}
+        truth = None if given.truth is None else given.truth[:, 0]
+        found = replay(model, *known, ratio=self.ratio, gate=self.gate, keep=keep, reference=truth)
         if self.smoother:
-            found = smooth(model, *known, found, gate=self.gate, keep=keep, beside=beside)
-        counts |= {"cost": found.cost}
-        if beside is not None:
-            counts |= {"cost_of_truth": found.cost_beside}
-        return Filtered(
-            *(found.state, found.sigma, found.covariance, found.kept, found.nis, found.nis_dof),
-            status=sentences(found.status, ReplayStatus),
-            counts=counts | {"converged": found.status == ReplayStatus.CONVERGED},
-        )
+            found = smooth(model, *known, found, gate=self.gate, keep=keep, reference=truth)
+        converged = found.status == ReplayStatus.CONVERGED.sentence
+        return found._replace(counts=found.counts | {"converged": converged})
 
 
 class Efficient(FilterPart):
@@ -53,7 +45,7 @@ class Efficient(FilterPart):
     smoother: bool = False
     keep_s: KeptTimes = []
 
-    def run(self, model: ReplayModel, given: Given) -> Filtered:
+    def run(self, model: ReplayModel, given: Given) -> Estimates:
         """Return the truth moved by the errors of the efficient estimator."""
         if given.truth is None:
             raise ValueError("the bound is linearised at the truth, which is not known here")
@@ -66,7 +58,7 @@ class Efficient(FilterPart):
         chart = model.chart(given.truth)
         state = model.displace(given.truth, (chart @ error[..., None])[..., 0])
         to_state = model.inverse_chart(state[:, kept]) @ chart[:, kept]
-        return Filtered(
+        return Estimates(
             state=state,
             sigma=sigma,
             covariance=to_state @ covariance @ np.swapaxes(to_state, -1, -2),

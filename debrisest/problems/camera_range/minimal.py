@@ -14,6 +14,7 @@ from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.dynamics import log_inertia
 from debrisest.dynamics.clohessy_wiltshire import mean_motion_of
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.landmarks.landmark_model import LandmarkModel
 from debrisest.problems.camera_range.data import require_measurable
 from debrisest.problems.camera_range.model import (
@@ -34,7 +35,7 @@ from debrisest.problems.camera_range.model import (
 )
 from debrisest.problems.camera_range.score import scores
 from debrisest.problems.camera_range.sights import landmark_model
-from debrisest.roles import Filtered, NonNegative, Positive, ProblemPart, Window
+from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 from debrisest.target.start_frame import in_start_frame
 
 _SCORED = np.r_[RATE_ERROR, POSITION_ERROR, VELOCITY_ERROR, LOG_INERTIA_ERROR]
@@ -142,7 +143,7 @@ class CameraRangeMinimal(ProblemPart):
         sigma[:, CORE_ERRORS + len(extras) :] = self.point_sigma_m
         return state, sigma[..., None] ** 2 * np.eye(sigma.shape[-1])
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma; landmarks may be absent."""
         state, sigma, extras = filtered.state, filtered.sigma, len(self._extras()[0])
         result: Data = {"q_hb": state[..., Q], "q_hb_sigma": _component_sigma(state, sigma)}

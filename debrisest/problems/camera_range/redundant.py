@@ -7,6 +7,7 @@ import numpy as np
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.dynamics.clohessy_wiltshire import mean_motion_of
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.model import Model
 from debrisest.problems.camera_range.data import require_measurable
 from debrisest.problems.camera_range.redundant_model import (
@@ -22,7 +23,7 @@ from debrisest.problems.camera_range.redundant_model import (
     redundant_model,
 )
 from debrisest.problems.camera_range.score import scores
-from debrisest.roles import Filtered, ProblemPart, Window
+from debrisest.roles import ProblemPart, Window
 
 _ROWS = np.array([*range(4, 13)])
 """Rate, position and velocity in the covariance."""
@@ -59,7 +60,7 @@ class CameraRangeRedundant(ProblemPart):
         sigma = _state({name: guess[f"{name}_sigma"] for name in _NAMES})
         return _state(guess), sigma[..., None] ** 2 * np.eye(sigma.shape[-1])
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
         sigma = {f"{name}_sigma": part for name, part in _parts(filtered.sigma).items()}
         return _parts(filtered.state) | sigma

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import perturbed_orbit
@@ -40,6 +40,14 @@ class Setup(NamedTuple):
     pixel_variance: float
     with_bias: bool
 
+    def of(self, runs: IntArray) -> "Setup":
+        """Return what is known of some runs."""
+        return self._replace(
+            observer=self.observer[:, runs],
+            to_camera=self.to_camera[:, runs],
+            scale=self.scale[runs],
+        )
+
 
 def scan_model(known: Setup) -> ScanModel:
     """Return the model of one clock step."""
@@ -55,6 +63,7 @@ def scan_model(known: Setup) -> ScanModel:
         points_jacobian=lambda state, k: points_jacobian(known, state, k),
         noise=known.pixel_variance * np.eye(2),
         error_names=tuple(names),
+        select=lambda runs: scan_model(known.of(runs)),
     )
 
 

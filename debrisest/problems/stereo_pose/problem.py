@@ -6,6 +6,7 @@ import numpy as np
 
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.model import Model
 from debrisest.filters.replay.replay_model import ReplayModel
 from debrisest.problems.stereo_pose.additive import additive_model
@@ -23,7 +24,7 @@ from debrisest.problems.stereo_pose.data import (
 from debrisest.problems.stereo_pose.model import RATE, VELOCITY, K, Q
 from debrisest.problems.stereo_pose.replay import replay_model
 from debrisest.problems.stereo_pose.score import scores
-from debrisest.roles import Filtered, Keys, NonNegative, ProblemPart, Window
+from debrisest.roles import Keys, NonNegative, ProblemPart, Window
 
 
 class _StereoPose(ProblemPart):
@@ -82,7 +83,7 @@ class StereoPoseAdditive(_StereoPose):
         state = state_of(guess)
         return state, _each(np.diag(_variances(variance, state)), len(state))
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
         return _with_sigmas(filtered.state, filtered.sigma)
 
@@ -106,7 +107,7 @@ class StereoPose(_StereoPose):
         state = state_of(guess)
         return state, _each(np.diag(_plain(_variances(variance, state))), len(state))
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma.
 
         A quaternion component's follows from the angles' as if these were uncorrelated.

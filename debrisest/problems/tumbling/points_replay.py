@@ -14,10 +14,12 @@ def replay_model(known_point_f: Array, seen: BoolArray, noise: float, step: floa
     """Return the problem of ``seen (run, time, feature)`` points.
 
     ``known_point_f (run, feature, 3)``, m, in the feature frame; ``noise`` of a coordinate, m;
-    ``step`` of an epoch, s. What a run shows of its points depends on which it sees: states carry
-    the number of their run.
+    ``step`` of an epoch, s.
     """
-    arms = contrasts(known_point_f[:, None], seen)
+    return _model(contrasts(known_point_f[:, None], seen), noise, step)
+
+
+def _model(arms: Array, noise: float, step: float) -> ReplayModel:
     rows_of_epoch = 3 * arms.shape[-2]
 
     def trajectory(state: Array, first: int, last: int) -> tuple[Array, Array]:
@@ -38,18 +40,18 @@ def replay_model(known_point_f: Array, seen: BoolArray, noise: float, step: floa
         sigma=np.full(rows_of_epoch, noise),
         error_names=body.ERROR_NAMES,
         displace=body.displace,
+        select=lambda runs: _model(arms[runs], noise, step),
     )
 
 
 def rows(arms: Array, states: Array, turning: Array, epochs: IntArray) -> tuple[Array, Array]:
     """Contrasts ``(run, epoch, m)`` of the points and their derivative ``(run, epoch, m, 11)``.
 
-    ``arms (run, time, feature - 1, 3)`` are the contrasts in the feature frame, of all runs;
-    ``states (run, epoch, 13)`` those of ``epochs``, and ``turning (run, epoch, 6, 8)`` theirs.
+    ``arms (run, time, feature - 1, 3)`` are the contrasts in the feature frame;
+    ``states (run, epoch, 12)`` those of ``epochs``, and ``turning (run, epoch, 6, 8)`` theirs.
     """
-    runs = states[:, :1, body.RUN.start].astype(np.int64)
     turn = quaternion.to_matrix(states[..., body.Q])
-    shown = arms[runs, epochs] @ np.swapaxes(turn, -1, -2)
+    shown = np.take(arms, epochs, axis=1) @ np.swapaxes(turn, -1, -2)
     by_turn = -matrix_of_cross(shown)
     by_rest = by_turn @ turning[:, :, None, :3]
     derivative = np.concatenate([by_turn, by_rest], axis=-1)

@@ -12,7 +12,7 @@ POSITION = slice(6, 9)
 
 
 def position_error(case, found) -> np.ndarray:
-    state = found.estimates.state[:, -1, : case.core.shape[-1]]
+    state = found.state[:, -1, : case.core.shape[-1]]
     return np.abs(case.model.difference(state, case.core[:, -1])[:, POSITION]).max(-1)
 
 
@@ -24,18 +24,18 @@ def test_a_false_range_is_rejected_and_counted(nominal, hidden: bool) -> None:
     seen[:, 120] &= not hidden
     case = case.with_sights(case.sights._replace(common=common, seen=seen))
     found, blind = case.filtered(started), case.filtered(started, false_alarm=None)
-    assert (found.estimates.rejected[:2, 120] >= 1).all()
+    assert (found.counts["rejected"][:2, 120] >= 1).all()
     assert (position_error(case, found) < 0.03).all()
     assert (position_error(case, blind)[:2] > 0.1).all()
     if hidden:
-        assert found.estimates.nis_dof[:2, 120].tolist() == [0, 0]
+        assert found.nis_dof[:2, 120].tolist() == [0, 0]
 
 
 def test_true_ranges_pass_as_often_as_they_should(nominal) -> None:
     case, started = nominal
     seen = np.zeros_like(case.sights.seen)
     found = case.with_sights(case.sights._replace(seen=seen)).filtered(started)
-    assert found.estimates.rejected.sum() <= 3  # of 196, with a probability of 1e-3 each
+    assert found.counts["rejected"].sum() <= 3  # of 196, with a probability of 1e-3 each
 
 
 def test_false_ranges_do_not_bend_a_robust_batch(experiment) -> None:
@@ -89,6 +89,6 @@ def test_a_landmark_is_inserted_by_its_pixels_only(experiment) -> None:
     seen[:, 110, 3, 2] = True
     shown[:, 110, 3] = [0.0, 0.0, np.linalg.norm(case.core[0, 110, 7:10])]
     found = case.with_sights(case.sights._replace(shown=shown, seen=seen)).filtered(started)
-    assert found.dropped.tolist() == [0, 0]
-    points = points_of(case.model, found.estimates.state[:, -1])
+    assert found.counts["dropped"].tolist() == [0, 0]
+    points = points_of(case.model, found.state[:, -1])
     assert np.abs(points[:, 3] - case.points[:, 3]).max() < 0.2
