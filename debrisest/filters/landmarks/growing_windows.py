@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.descent import Damping, descend
 from debrisest.filters.landmarks.cost import Cost, Prior, Unknowns, cost
 from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
-from debrisest.filters.runs import put, take
+from debrisest.filters.runs import take
 from debrisest.filters.scaled import scaled_solve
 
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
@@ -71,7 +72,7 @@ def fit(
         at, prior = place(model, sights, at, prior, window.last)
         most = iterations if window is not windows[-1] else _PATIENCE * iterations
         found = _descend(model, sights, at, prior, window.frames, most, robust)
-    return Fit(at, prior, found)
+    return found
 
 
 def place(
@@ -116,26 +117,16 @@ def _descend(
     frames: IntArray,
     iterations: int,
     robust: bool,
-) -> Cost:
-    """Lower the cost of every run, each with a damping of its own; ``at`` is changed in place."""
-    best = _usable(cost(model, sights, prior, at, frames, robust))
-    damping = np.full(len(best.value), _FIRST_DAMPING)
-    active = np.isfinite(best.value)
-    for _ in range(iterations - 1):
-        runs = np.flatnonzero(active)
-        if len(runs) == 0:
-            break
-        here = take(best, runs)
-        step, promise = _step(here, damping[runs])
-        trial = take(at, runs).moved(step)
-        part = model.of(runs), sights.at(runs), take(prior, runs)
-        new = _usable(cost(*part, trial, frames, robust))
-        better = new.value <= here.value
-        put(best, runs[better], take(new, np.flatnonzero(better)))
-        put(at, runs[better], take(trial, np.flatnonzero(better)))
-        damping[runs] = _next_damping(damping[runs], better)
-        active[runs] = ~((promise < _DECREASE) | (damping[runs] >= _MOST_DAMPING))
-    return best
+) -> Fit:
+    """Lower the cost of every run; ``at`` is changed in place."""
+
+    def trial(best: Fit, runs: IntArray, step: Array) -> Fit:
+        moved, part = take(best.at, runs).moved(step), take(prior, runs)
+        found = cost(model.of(runs), sights.at(runs), part, moved, frames, robust)
+        return Fit(moved, part, _usable(found))
+
+    first = Fit(at, prior, _usable(cost(model, sights, prior, at, frames, robust)))
+    return descend(first, lambda fit: fit.found.value, _step, trial, _DAMPING, iterations)[0]
 
 
 def _usable(found: Cost) -> Cost:
@@ -145,8 +136,9 @@ def _usable(found: Cost) -> Cost:
     return found
 
 
-def _step(at: Cost, damping: Array) -> tuple[Array, Array]:
+def _step(fit: Fit, _: IntArray, damping: Array) -> tuple[Array, Array]:
     """Damped step and the decrease of the cost that it promises."""
+    at = fit.found
     size = np.diagonal(at.information, 0, -2, -1)
     damped = at.information.copy()
     index = np.arange(size.shape[-1])
@@ -159,3 +151,10 @@ def _step(at: Cost, damping: Array) -> tuple[Array, Array]:
 
 def _next_damping(damping: Array, better: BoolArray) -> Array:
     return np.where(better, np.maximum(damping / 10.0, _LEAST_DAMPING), 10.0 * damping)
+
+
+def _done(taken: Array, _: Array, damping: Array) -> BoolArray:
+    return np.asarray((taken < _DECREASE) | (damping >= _MOST_DAMPING))
+
+
+_DAMPING = Damping(_FIRST_DAMPING, _next_damping, _done)

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray
+from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.descent import Damping, descend
 from debrisest.filters.replay.evidence import Evidence, Linearization, linearize
 from debrisest.filters.replay.replay_model import ReplayModel
-from debrisest.filters.runs import put, take
+from debrisest.filters.runs import take
 from debrisest.filters.scaled import scaled_solve
 
 CONVERGED = 1e-2
@@ -43,26 +44,16 @@ def gauss_newton(
     information (the information itself as a measure stalls in the long valleys of such costs).
     `iterations` counts linearisations; runs stop one by one.
     """
-    best = linearize(model, evidence, state, last)
-    damping = np.zeros(len(state))
-    step, decrement = _step(best, evidence.information, damping)
-    active = np.isfinite(best.cost) & ~(decrement < CONVERGED)
-    for _ in range(iterations - 1):
-        runs = np.flatnonzero(active)
-        if len(runs) == 0:
-            break
+
+    def step(at: Linearization, runs: IntArray, damping: Array) -> tuple[Array, Array]:
+        return _step(at, evidence.information[runs], damping)
+
+    def trial(best: Linearization, runs: IntArray, step: Array) -> Linearization:
         part = model.of(runs)
-        trial = linearize(
-            part, take(evidence, runs), move(part, best.state[runs], step[runs]), last
-        )
-        better = trial.cost <= best.cost[runs]
-        put(best, runs[better], take(trial, np.flatnonzero(better)))
-        damping[runs] = _next_damping(damping[runs], better)
-        step[runs], decrement[runs] = _step(
-            take(best, runs), evidence.information[runs], damping[runs]
-        )
-        active[runs] = ~(decrement[runs] < CONVERGED)
-    return Solution(best, step, decrement)
+        return linearize(part, take(evidence, runs), move(part, best.state[runs], step), last)
+
+    first = linearize(model, evidence, state, last)
+    return Solution(*descend(first, lambda at: at.cost, step, trial, _DAMPING, iterations))
 
 
 def move(model: ReplayModel, state: Array, step: Array) -> Array:
@@ -83,3 +74,6 @@ def _step(at: Linearization, prior: Array, damping: Array) -> tuple[Array, Array
 def _next_damping(damping: Array, better: BoolArray) -> Array:
     less = np.where(damping / 10.0 < _LEAST_DAMPING, 0.0, damping / 10.0)
     return np.where(better, less, np.maximum(_FIRST_DAMPING, 10.0 * damping))
+
+
+_DAMPING = Damping(0.0, _next_damping, lambda _, promise, __: promise < CONVERGED)
