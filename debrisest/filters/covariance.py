@@ -9,12 +9,12 @@ _SMALLEST_VARIANCE = 1e-30
 
 
 def solve(matrix: Array, right: Array) -> Array:
-    """Solution per run; NaN where the matrix is singular."""
+    """Solution for every leading index; NaN where the matrix is singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     except np.linalg.LinAlgError:
         sign, _ = np.linalg.slogdet(matrix)
-        singular = ~(np.abs(sign) > 0.0)[:, None, None]
+        singular = ~(np.abs(sign) > 0.0)[..., None, None]
         solved = np.linalg.solve(np.where(singular, np.eye(matrix.shape[-1]), matrix), right)
         return np.where(singular, np.nan, solved)
 

@@ -10,6 +10,7 @@ from debrisest.filters import jacobian
 from debrisest.filters.covariance import solve
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.gate import Gate, Gatekeeper
+from debrisest.filters.iterated import iterate
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.model import Model
 from debrisest.filters.runs import put
@@ -178,29 +179,26 @@ def _step(model: Model, prior: _Prior, nu: Array, response: Array) -> _Step:
 
 def _iterate(model: Model, rule: _Rule, prior: _Prior, step: _Step) -> tuple[Array, IntArray]:
     """Posterior state and number of steps; leaves the last step of every run in `step`."""
-    state, before = model.retract(prior.state, step.correction), prior.state
-    moving, count = np.arange(len(state)), np.ones(len(state), dtype=np.int64)
-    for _ in range(rule.iterations - 1):
-        moving = moving[_moved(model, rule, before, state, step.variance)[moving]]
-        if len(moving) == 0:
-            break
-        part, at, here = model.of(moving), state[moving], prior.of(moving)
+
+    def again(runs: IntArray) -> None:
+        part, here = model.of(runs), prior.of(runs)
+        at = part.retract(here.state, step.correction[runs])
         innovation, response = _linearise(part, here, at)
         lag = part.difference(here.state, at)
         residual = innovation - (lag[:, None] @ response)[:, 0]
-        put(step, moving, _step(part, here, residual, response))
-        before, state = state, model.retract(prior.state, step.correction)
-        count[moving] += 1
-    return state, count
+        put(step, runs, _step(part, here, residual, response))
 
+    def moved(before: Array) -> BoolArray:
+        """Whether a step was not short; a run that is not finite ends there."""
+        old, new = (model.retract(prior.state, e) for e in (before, step.correction))
+        if rule.stop == "relative_norm":
+            change, size = np.linalg.norm(new - old, axis=-1), np.linalg.norm(new, axis=-1)
+            return np.asarray(change > rule.tolerance * size)
+        change = np.abs(model.difference(new, old))
+        return np.asarray((change > rule.tolerance * np.sqrt(step.variance)).any(-1))
 
-def _moved(model: Model, rule: _Rule, before: Array, after: Array, variance: Array) -> BoolArray:
-    """Runs whose step was not short; one that is not finite ends there."""
-    if rule.stop == "relative_norm":
-        change, size = np.linalg.norm(after - before, axis=-1), np.linalg.norm(after, axis=-1)
-        return np.asarray(change > rule.tolerance * size)
-    change = np.abs(model.difference(after, before))
-    return np.asarray((change > rule.tolerance * np.sqrt(variance)).any(-1))
+    count = iterate(step.correction, again, moved, rule.iterations)
+    return model.retract(prior.state, step.correction), count
 
 
 def _joseph(model: Model, prior: _Prior, step: _Step) -> Array:

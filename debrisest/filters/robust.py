@@ -58,4 +58,5 @@ def _settle(
 def _loss(model: ReplayModel, evidence: Evidence, at: Linearization) -> Array:
     offset = model.plain_difference(evidence.prior, at.state)
     prior = (offset[:, None] @ evidence.information @ offset[..., None])[:, 0, 0]
-    return np.asarray(prior + weights.cauchy_loss(at.residual))
+    squares = (at.residual / weights.CAUCHY_SCALE) ** 2
+    return np.asarray(prior + weights.cauchy_loss(squares).sum((-2, -1)))

@@ -13,7 +13,17 @@ LIMIT = 4.5
 
 def cauchy(residual: Array) -> Array:
     """Weights of Cauchy's loss, which lets go of outliers gradually."""
-    return np.asarray((1.0 + (residual / CAUCHY_SCALE) ** 2) ** -0.5)
+    return cauchy_weight((residual / CAUCHY_SCALE) ** 2)
+
+
+def cauchy_weight(square: Array) -> Array:
+    """The same by squares over `CAUCHY_SCALE`^2, for instance of a group that is judged as one."""
+    return np.asarray((1.0 + square) ** -0.5)
+
+
+def cauchy_loss(square: Array) -> Array:
+    """Cauchy's loss of such squares."""
+    return np.asarray(CAUCHY_SCALE**2 * np.log1p(square))
 
 
 def hard(residual: Array) -> Array:
@@ -29,9 +39,3 @@ def innovation_gate(innovation: Array, derivative: Array, covariance: Array) -> 
     """
     spread = 1.0 + ((derivative @ covariance) * derivative).sum(-1)
     return np.asarray(innovation**2 <= GATE**2 * spread, dtype=np.float64)
-
-
-def cauchy_loss(residual: Array) -> Array:
-    """Sum per run of Cauchy's loss of residuals ``(run, epoch, m)``."""
-    scaled = np.log1p((residual / CAUCHY_SCALE) ** 2)
-    return np.asarray(CAUCHY_SCALE**2 * scaled.sum((-2, -1)))

@@ -10,7 +10,7 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.landmarks.landmark_model import LandmarkModel, Rows, Sights
-from debrisest.filters.weights import CAUCHY_SCALE
+from debrisest.filters.weights import CAUCHY_SCALE, cauchy_loss, cauchy_weight
 
 _AGREEING = 4.0
 """Sigmas within which a landmark's residual is no false match."""
@@ -97,14 +97,13 @@ def cost(
 
 
 def _cauchy(squares: Array) -> Array:
-    return np.asarray((1.0 + squares / CAUCHY_SCALE**2) ** -0.5)
+    return cauchy_weight(squares / CAUCHY_SCALE**2)
 
 
 def _loss(squares: Array, robust: bool) -> Array:
     """Sum over the epochs of squares (run, epoch, .), which Cauchy's loss lets grow slowly."""
-    if robust:
-        squares = CAUCHY_SCALE**2 * np.log1p(squares / CAUCHY_SCALE**2)
-    return np.asarray(squares.sum((-2, -1)))
+    loss = cauchy_loss(squares / CAUCHY_SCALE**2) if robust else squares
+    return np.asarray(loss.sum((-2, -1)))
 
 
 def _landmark_terms(

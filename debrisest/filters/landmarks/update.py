@@ -3,12 +3,14 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import gammainccinv
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.covariance import solve
+from debrisest.filters.gate import chi_square_limits, group_squares
+from debrisest.filters.iterated import iterate
 from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
 from debrisest.filters.missing import drop_missing
+from debrisest.filters.runs import put, take
 
 
 class Belief(NamedTuple):
@@ -95,27 +97,26 @@ def _iterate(
     used: BoolArray,
     step: _Step,
 ) -> IntArray:
-    """Go on from the first step, changed in place, until no run moves; number of steps (run,)."""
-    last, moving = np.zeros_like(step.correction), np.asarray(used.any(-1))
-    count = np.ones(len(moving), dtype=np.int64)
+    """Go on from the first step, changed in place; number of steps (run,)."""
     variance = np.diagonal(prior.covariance, 0, -2, -1)
-    for _ in range(rule.iterations - 1):
-        left = variance - (step.cross * step.gain).sum(-1)
-        sigma = np.sqrt(np.maximum(left, 1e-12 * np.abs(variance)))
-        moving = moving & (np.abs(step.correction - last) > rule.tolerance * sigma).any(-1)
-        if not moving.any():
-            break
+    anything = used.any(-1, keepdims=True)
+
+    def again(runs: IntArray) -> None:
         core, points = _moved(model, prior, step.correction)
         linear = _linearise(model, core, points, sights, k, inflation)
         shift = (prior.points - points).reshape(len(core), -1)
         lag = np.concatenate([model.difference(prior.core, core), shift], axis=-1)
         residual = linear.innovation - (linear.response @ lag[..., None])[..., 0]
         new = _gauss_newton(prior, linear._replace(innovation=residual), used)
-        last = step.correction.copy()
-        for kept, values in zip(step, new):
-            kept[moving] = values[moving]
-        count += moving
-    return count
+        put(step, runs, take(new, runs))
+
+    def moved(before: Array) -> BoolArray:
+        left = variance - (step.cross * step.gain).sum(-1)
+        sigma = np.sqrt(np.maximum(left, 1e-12 * np.abs(variance)))
+        far = np.abs(step.correction - before) > rule.tolerance * sigma
+        return np.asarray((far & anything).any(-1))
+
+    return iterate(step.correction, again, moved, rule.iterations)
 
 
 def _linearise(
@@ -155,7 +156,7 @@ def _gated(
     shown: BoolArray = np.asarray(sights.seen.any(-1))
     if rule.false_alarm is None:
         return seen, shown
-    limits = 2.0 * gammainccinv(0.5 * np.maximum(np.arange(max(each, 1) + 1), 1), rule.false_alarm)
+    limits = chi_square_limits(rule.false_alarm, each)
     near = _near(prior, linear, slice(landmarks * each, None), limits[1])
     used = seen.copy()
     used[:, landmarks * each :] &= near
@@ -163,15 +164,8 @@ def _gated(
         return used, shown
     first = np.arange(landmarks * each).reshape(landmarks, each)
     blocks = _blocks(model, prior, linear, first)
-    nu, _, blocks = drop_missing(
-        sights.seen,
-        linear.innovation[:, first],
-        linear.innovation[:, first][..., None, :],
-        blocks + linear.noise[:, first[:, :, None], first[:, None, :]],
-    )
-    squares = (
-        nu * solve(blocks.reshape(-1, each, each), nu.reshape(-1, each, 1)).reshape(nu.shape)
-    ).sum(-1)
+    total = blocks + linear.noise[:, first[:, :, None], first[:, None, :]]
+    squares = group_squares(sights.seen, linear.innovation[:, first], total)
     accepted: BoolArray = shown & (squares <= limits[sights.seen.sum(-1)])
     used[:, : landmarks * each] &= np.repeat(accepted, each, axis=-1)
     return used, accepted
