@@ -119,6 +119,13 @@ class Given(NamedTuple):
     truth: Array | None = None
     """True states (run, time, n), for a bound or a diagnostic; no estimate depends on them."""
 
+    @property
+    def known_truth(self) -> Array:
+        """Return the true states; raise ValueError where they are not known."""
+        if self.truth is None:
+            raise ValueError("the bound is linearised at the truth, which is not known here")
+        return self.truth
+
 
 class ProblemPart(Part):
     """An estimation problem: what is estimated, from what, by which model.

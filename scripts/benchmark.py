@@ -33,10 +33,10 @@ from debrisest.arrays import Array, BoolArray
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.dynamics.torque_free import torque_free
-from debrisest.filters.extended import extended
+from debrisest.filters.kalman.extended import extended
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
 from debrisest.filters.replay.replay import replay
-from debrisest.filters.unscented import UnscentedParameters, unscented
 from debrisest.problems.camera_range.redundant_model import Setup as Redundant
 from debrisest.problems.camera_range.redundant_model import process as shape_process
 from debrisest.problems.camera_range.redundant_model import redundant_model

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import gammainccinv
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.covariance import solve
+from debrisest.filters.linear_algebra import solve
 from debrisest.filters.missing import drop_missing
 
 

@@ -9,6 +9,9 @@ GATE = 5.0
 """Innovations beyond this many sigma are rejected."""
 LIMIT = 4.5
 """Residuals of the estimate itself beyond this are."""
+FALSE_MATCH = 7.0
+"""What is so far from the truth is an outlier, which an efficient estimator recognises: Gaussian
+noise would be once in 10^11 times."""
 
 
 def cauchy(residual: Array) -> Array:

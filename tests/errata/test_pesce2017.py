@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from debrisest.assessment.bound import paired_errors
 from debrisest.dynamics.inertia_ratios import ratios
 from debrisest.dynamics.kepler import MU_EARTH
 from debrisest.dynamics.relative_orbit import leader_orbit, relative_acceleration
 from debrisest.dynamics.relative_rotation import rotate
-from debrisest.filters.extended import extended
+from debrisest.filters.bound.motion import paired_errors
+from debrisest.filters.kalman.extended import extended
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.additive import (
     additive_model,

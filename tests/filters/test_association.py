@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import associated, jointly_associated, labelled
 from debrisest.filters.association.weights import Validation
-from debrisest.filters.extended import extended
+from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
+from debrisest.filters.scan_model import ScanModel
 from debrisest.filters.status import FilterStatus
 
 RUNS, EPOCHS, SENSORS = 6, 25, 3

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from debrisest.filters.extended import extended
 from debrisest.filters.gate import Gate
+from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
 from debrisest.filters.status import FilterStatus
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from debrisest.filters.extended import extended
+from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
 
 VARIANTS = [{}, {"iterations": 4}, {"iterations": 4, "stop": "relative_norm", "tolerance": 1e-9}]

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from debrisest.filters import jacobian
-from debrisest.filters.extended import extended
+from debrisest.filters.kalman import jacobian
+from debrisest.filters.kalman.extended import extended
+from debrisest.filters.kalman.unscented import unscented
 from debrisest.filters.model import Model
-from debrisest.filters.unscented import unscented
 
 R = np.diag([0.2**2, 0.01**2])
 Q = np.diag([1e-3, 1e-3, 1e-4, 1e-4])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from debrisest.filters.extended import extended
 from debrisest.filters.gate import Gate, Gatekeeper
+from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
 
 GROUPS = (7, 3, 7, 3, 3, 0, 3)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from debrisest.filters.replay.evidence import linearize, weigh
 from debrisest.filters.replay.gauss_newton import gauss_newton
+from debrisest.filters.replay.measured_arc import linearize, weigh
 from debrisest.filters.replay.replay import anchors, replay, smooth
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.status import ReplayStatus
 
 F = np.array([[1.0, 0.5], [-0.1, 0.95]])

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
 from debrisest.filters.status import FilterStatus
-from debrisest.filters.unscented import UnscentedParameters, unscented
 
 RUNS, EPOCHS, BAD = 5, 12, 2
 GOOD = [run for run in range(RUNS) if run != BAD]

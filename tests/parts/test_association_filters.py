@@ -5,13 +5,13 @@ import pytest
 from pydantic import ValidationError
 
 from debrisest.clock import Clock
-from debrisest.filters.association.scan_model import ScanModel
+from debrisest.filters.scan_model import ScanModel
 from debrisest.parts.filters.association import (
     AssociationFilter,
     JointAssociation,
     KnownAssociation,
-    LinearisedAtTruth,
 )
+from debrisest.parts.filters.bound import LinearisedAtTruth
 from debrisest.roles import Given
 
 RUNS, EPOCHS = 3, 9

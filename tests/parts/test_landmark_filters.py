@@ -9,7 +9,8 @@ from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics.relative_motion import hill_frame
 from debrisest.filters.estimates import Estimates
-from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkBound, LandmarkFilter
+from debrisest.parts.filters.bound import LandmarkBound
+from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
 from debrisest.parts.sensors.camera_range import CameraRange
 from debrisest.parts.starts.first_image import FirstImage
 from debrisest.parts.starts.shape_guess import Guessed, ShapeGuess

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.dynamics.pointing import camera_axes, camera_rate
-from debrisest.filters.unscented import UnscentedParameters, unscented
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.problems.camera_range.redundant_model import (
     CORE,
     INERTIA,

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from debrisest.assessment.bound import paired_errors
 from debrisest.assessment.consistency import chart_free
-from debrisest.filters.replay.evidence import linearize, weigh
+from debrisest.filters.bound.motion import paired_errors
 from debrisest.filters.replay.gauss_newton import move
+from debrisest.filters.replay.measured_arc import linearize, weigh
 from debrisest.filters.replay.replay import replay, smooth
 from debrisest.filters.status import ReplayStatus
 from debrisest.problems.stereo_pose import model as stereo_pose

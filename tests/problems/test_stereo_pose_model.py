@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from debrisest.filters.unscented import unscented
+from debrisest.filters.kalman.unscented import unscented
 from debrisest.problems.stereo_pose import additive
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.truth import draw_guess, simulate_truth

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from debrisest.assessment.bound import paired_errors
 from debrisest.assessment.consistency import interval, normalized_square
 from debrisest.clock import Clock
-from debrisest.parts.filters.replay import Efficient
+from debrisest.filters.bound.motion import paired_errors
+from debrisest.parts.filters.bound import Efficient
 from debrisest.parts.starts.starts import FirstPoints
 from debrisest.problems.tumbling.points import MotionVariances, TumblingPoints
 from debrisest.problems.tumbling.points_inertia import log_tensor

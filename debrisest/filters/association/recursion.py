@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh, update
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.runs import take
+from debrisest.filters.scan_model import ScanModel
 
 
 class Rule(NamedTuple):

@@ -9,10 +9,10 @@ import numpy as np
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.association.joint import joint
 from debrisest.filters.association.recursion import Rule, filtered
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.update import Weigh
 from debrisest.filters.association.weights import Validation, nearest, probabilistic
 from debrisest.filters.estimates import Estimates
+from debrisest.filters.scan_model import ScanModel
 
 Method = Literal["probabilistic", "nearest", "known"]
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
-from debrisest.filters.covariance import solve
+from debrisest.filters.linear_algebra import solve
 
 Weigh = Callable[[Array], Array]
 """From squared distances (run, track, sensor, detection), infinite where not validated, to the

@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.landmark_model import LandmarkModel, Sights
 from debrisest.filters.landmarks.cost import Prior, Unknowns
 from debrisest.filters.landmarks.growing_windows import Fit, Window, fit, fresh
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
+from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.runs import put, take
-from debrisest.filters.scaled import scaled_inverse
 from debrisest.outcome import Outcome
 
 _PRUNE = 100.0

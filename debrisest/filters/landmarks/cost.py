@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Rows, Sights
+from debrisest.filters.landmark_model import LandmarkModel, Rows, Sights
 from debrisest.filters.weights import CAUCHY_SCALE, cauchy_loss, cauchy_weight
 
 _AGREEING = 4.0

@@ -11,10 +11,10 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.descent import Damping, descend
+from debrisest.filters.landmark_model import LandmarkModel, Sights
 from debrisest.filters.landmarks.cost import Cost, Prior, Unknowns, cost
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
+from debrisest.filters.linear_algebra import scaled_solve
 from debrisest.filters.runs import take
-from debrisest.filters.scaled import scaled_solve
 
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
 _FEW, _PATIENCE = 5, 3

@@ -11,7 +11,7 @@ import numpy as np
 
 from debrisest.arrays import BoolArray, Data, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights, joined
+from debrisest.filters.landmark_model import LandmarkModel, Sights, joined
 from debrisest.filters.landmarks.tracks import Tracks, begin, inserted, judged, without
 from debrisest.filters.landmarks.update import Belief, Rule, update
 from debrisest.filters.runs import take

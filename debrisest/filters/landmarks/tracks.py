@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
+from debrisest.filters.landmark_model import LandmarkModel, Sights
 from debrisest.filters.landmarks.update import Belief
 
 CONFIRMING, PATIENCE = 5, 6

@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.covariance import solve
 from debrisest.filters.gate import chi_square_limits, group_squares
 from debrisest.filters.iterated import iterate
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
+from debrisest.filters.landmark_model import LandmarkModel, Sights
+from debrisest.filters.linear_algebra import solve
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.runs import put, take
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.filters.replay.evidence import Evidence
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay.measured_arc import Evidence
+from debrisest.filters.replay_model import ReplayModel
 
 
 def cost_of(model: ReplayModel, evidence: Evidence, state: Array, last: int) -> Array:

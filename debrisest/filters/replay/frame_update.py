@@ -6,9 +6,9 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.filters import weights
-from debrisest.filters.replay.evidence import Evidence, normal_equations
-from debrisest.filters.replay.replay_model import ReplayModel
-from debrisest.filters.scaled import scaled_inverse, scaled_solve
+from debrisest.filters.linear_algebra import scaled_inverse, scaled_solve
+from debrisest.filters.replay.measured_arc import Evidence, normal_equations
+from debrisest.filters.replay_model import ReplayModel
 
 FRAME_ITERATIONS = 3
 _FRAME_CONVERGED = 1e-3

@@ -6,10 +6,10 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.descent import Damping, descend
-from debrisest.filters.replay.evidence import Evidence, Linearization, linearize
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.linear_algebra import scaled_solve
+from debrisest.filters.replay.measured_arc import Evidence, Linearization, linearize
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import take
-from debrisest.filters.scaled import scaled_solve
 
 CONVERGED = 1e-2
 """The predicted decrease of the cost below which the iteration ends."""

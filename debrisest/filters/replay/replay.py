@@ -12,14 +12,14 @@ import numpy as np
 
 from debrisest.arrays import Array, Data, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
+from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.replay.cost import cost_of
-from debrisest.filters.replay.evidence import Evidence, weigh
 from debrisest.filters.replay.frame_update import FRAME_ITERATIONS, Belief, predict, update
 from debrisest.filters.replay.gauss_newton import Solution, gauss_newton, move
-from debrisest.filters.replay.replay_model import ReplayModel
-from debrisest.filters.robust import robust_newton
+from debrisest.filters.replay.measured_arc import Evidence, weigh
+from debrisest.filters.replay.robust import robust_newton
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import take
-from debrisest.filters.scaled import scaled_inverse
 from debrisest.filters.status import ReplayStatus
 
 RATIO = 1.25

@@ -5,11 +5,10 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from debrisest.arrays import Array
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import associated, jointly_associated
 from debrisest.filters.association.weights import Misses, Validation
 from debrisest.filters.estimates import Estimates
+from debrisest.filters.scan_model import ScanModel
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given, Positive
 
@@ -55,7 +54,7 @@ class AssociationFilter(_Validating):
             method=self.method,
             stacked=self.stacked,
             relinearise=self._every(given.clock.step),
-            truth=_truth(given) if self.linearised == "truth" else None,
+            truth=given.known_truth if self.linearised == "truth" else None,
             keep=kept_epochs(self.keep_s, given.clock),
         )
         return _unlabelled(found)
@@ -95,43 +94,16 @@ class KnownAssociation(FilterPart):
             method="known",
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _counting(found, "repairs")
-
-
-class LinearisedAtTruth(FilterPart):
-    """The posterior bound along each run (Tichavsky et al. 1998) as an estimator.
-
-    Known detections, linearised at the truth.
-    """
-
-    needs = ("scan_model",)
-    kind: Literal["linearised_at_truth"]
-    keep_s: KeptTimes = []
-
-    def run(self, model: ScanModel, given: Given) -> Estimates:
-        """Return the truth moved by the errors of the efficient estimator."""
-        found = associated(
-            *(model, given.state, given.covariance, given.measured, Validation()),
-            method="known",
-            truth=_truth(given),
-            keep=kept_epochs(self.keep_s, given.clock),
-        )
-        return _counting(found, "repairs")
-
-
-def _truth(given: Given) -> Array:
-    if given.truth is None:
-        raise ValueError("this filter is linearised at the truth, which is not known here")
-    return given.truth
+        return counting(found, "repairs")
 
 
 def _unlabelled(found: Estimates) -> Estimates:
     """Without NIS, which is not chi-square where detections are chosen by their distance."""
-    return _counting(found, "repairs", "validated")._replace(
+    return counting(found, "repairs", "validated")._replace(
         nis=np.full_like(found.nis, np.nan), nis_dof=np.zeros_like(found.nis_dof)
     )
 
 
-def _counting(found: Estimates, *names: str) -> Estimates:
-    """With these of its counts only."""
+def counting(found: Estimates, *names: str) -> Estimates:
+    """Return them with these of their counts only."""
     return found._replace(counts={name: found.counts[name] for name in names})

@@ -6,10 +6,10 @@ from pydantic import Field
 
 from debrisest.clock import Clock
 from debrisest.filters.estimates import Estimates
-from debrisest.filters.extended import extended
 from debrisest.filters.gate import Gate
+from debrisest.filters.kalman.extended import extended
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
-from debrisest.filters.unscented import UnscentedParameters, unscented
 from debrisest.roles import FilterPart, Given, NonNegative, Positive
 
 KeptTimes = Annotated[

@@ -8,14 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from debrisest.arrays import Array
-from debrisest.assessment.landmark_bound import landmark_bound
 from debrisest.clock import Clock
 from debrisest.filters.estimates import Estimates
+from debrisest.filters.landmark_model import LandmarkModel, core_of, split
 from debrisest.filters.landmarks.batch_start import Batch, Started, StartStatus, batch_start
 from debrisest.filters.landmarks.growing_windows import Window
 from debrisest.filters.landmarks.landmark_filter import Annealing, landmark_filter
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, joined, points_of, split
 from debrisest.filters.landmarks.update import Belief, Rule
 from debrisest.filters.status import ReplayStatus
 from debrisest.outcome import sentences
@@ -96,7 +94,7 @@ class LandmarkBatch(_LandmarkFilter):
             started = batch_start(
                 model,
                 sights,
-                model.parameters(_core(model, given.state)),
+                model.parameters(core_of(model, given.state)),
                 given.covariance[:, held:, held:],
                 self._batch(given.clock),
             )
@@ -133,7 +131,7 @@ class LandmarkFilter(_LandmarkFilter):
     def run(self, model: LandmarkModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
         sights, held = split(model, given.measured), model.held
-        core, freedom = model.start(model.parameters(_core(model, given.state)))
+        core, freedom = model.start(model.parameters(core_of(model, given.state)))
         runs, n_e = given.covariance.shape[:2]
         n_c = model.errors
         covariance = np.zeros((runs, n_e, n_e))
@@ -151,46 +149,6 @@ class LandmarkFilter(_LandmarkFilter):
             keep=kept_epochs(self.keep_s, given.clock),
         )
         return found._replace(status=_status(found, None))
-
-
-class LandmarkBound(FilterPart):
-    """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
-
-    needs = ("landmark_model",)
-    kind: Literal["landmark_bound"]
-    keep_s: KeptTimes = []
-
-    def run(self, model: LandmarkModel, given: Given) -> Estimates:
-        """Return the truth moved by the errors of the efficient estimator."""
-        if given.truth is None:
-            raise ValueError("the bound is linearised at the truth, which is not known here")
-        runs, epochs = given.measured.shape[:2]
-        kept = sorted({*kept_epochs(self.keep_s, given.clock), epochs - 1})
-        core, points = _core(model, given.truth), points_of(model, given.truth)
-        held, n_c = model.held, model.errors
-        bound = landmark_bound(
-            model,
-            core[:, 0],
-            points[:, 0],
-            model.parameters(_core(model, given.state)),
-            given.covariance[:, held:, held:],
-            split(model, given.measured),
-            kept,
-        )
-        moved = points + bound.error[..., n_c:].reshape(points.shape)
-        return Estimates(
-            state=joined(model.retract(core, bound.error[..., :n_c]), moved),
-            sigma=bound.sigma,
-            covariance=bound.covariance,
-            kept=np.array(kept, dtype=np.int64),
-            nis=np.full((runs, epochs), np.nan),
-            nis_dof=np.zeros((runs, epochs), dtype=np.int64),
-            status=np.array(["linearised at the truth"] * runs),
-        )
-
-
-def _core(model: LandmarkModel, state: Array) -> Array:
-    return state[..., : state.shape[-1] - 3 * model.landmarks]
 
 
 def _windows(ends: Iterable[tuple[float, float]], clock: Clock) -> list[Window]:

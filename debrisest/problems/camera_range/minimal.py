@@ -15,7 +15,7 @@ from debrisest.clock import Clock
 from debrisest.dynamics import log_inertia
 from debrisest.dynamics.clohessy_wiltshire import mean_motion_of
 from debrisest.filters.estimates import Estimates
-from debrisest.filters.landmarks.landmark_model import LandmarkModel
+from debrisest.filters.landmark_model import LandmarkModel
 from debrisest.problems.camera_range.data import require_measurable
 from debrisest.problems.camera_range.model import (
     CORE,
@@ -33,8 +33,8 @@ from debrisest.problems.camera_range.model import (
     RangeModel,
     Setup,
 )
+from debrisest.problems.camera_range.projection import landmark_model
 from debrisest.problems.camera_range.score import scores
-from debrisest.problems.camera_range.sights import landmark_model
 from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 from debrisest.target.start_frame import in_start_frame
 

@@ -19,7 +19,7 @@ from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import perturbed_orbit
-from debrisest.filters.association.scan_model import ScanModel
+from debrisest.filters.scan_model import ScanModel
 from debrisest.sensors import pinhole
 
 ORBIT = slice(0, 6)

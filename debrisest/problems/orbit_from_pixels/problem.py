@@ -8,9 +8,9 @@ from pydantic import Field, model_validator
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import labelled
 from debrisest.filters.estimates import Estimates
+from debrisest.filters.scan_model import ScanModel
 from debrisest.problems.orbit_from_pixels.model import ORBIT, Setup, scan_model
 from debrisest.problems.orbit_from_pixels.score import scores, true_bias
 from debrisest.roles import NonNegative, Positive, ProblemPart, Window

@@ -8,7 +8,7 @@ from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.model import Model
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.stereo_pose.additive import additive_model
 from debrisest.problems.stereo_pose.chart import ATTITUDE_ERROR
 from debrisest.problems.stereo_pose.data import (

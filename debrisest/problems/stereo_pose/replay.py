@@ -7,7 +7,7 @@ from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import transitions
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose.model import (
     POSITION,

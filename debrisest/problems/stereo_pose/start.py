@@ -7,7 +7,7 @@ from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.filters import weights
-from debrisest.filters.covariance import solve
+from debrisest.filters.linear_algebra import solve
 from debrisest.problems.stereo_pose.model import (
     POINTS,
     POSITION,

@@ -15,7 +15,7 @@ from debrisest.attitude import quaternion
 from debrisest.attitude.points import features_frame
 from debrisest.clock import Clock
 from debrisest.filters.estimates import Estimates
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.tumbling.points_axes import in_principal_axes, rate_by_errors, sigmas
 from debrisest.problems.tumbling.points_contrasts import compared, contrasts
 from debrisest.problems.tumbling.points_inertia import log_inertia

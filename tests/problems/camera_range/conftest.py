@@ -8,13 +8,13 @@ import pytest
 from debrisest.attitude import quaternion
 from debrisest.dynamics import clohessy_wiltshire, gravity_gradient, log_inertia
 from debrisest.dynamics.pointing import camera_axes
+from debrisest.filters.landmark_model import LandmarkModel, Sights, split
 from debrisest.filters.landmarks.batch_start import Batch, Started, batch_start
 from debrisest.filters.landmarks.growing_windows import Window
 from debrisest.filters.landmarks.landmark_filter import landmark_filter
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights, split
 from debrisest.filters.landmarks.update import Belief, Rule
 from debrisest.problems.camera_range.model import Setup
-from debrisest.problems.camera_range.sights import landmark_model
+from debrisest.problems.camera_range.projection import landmark_model
 
 N, STEP, FOCAL = 1.078007613e-3, 5.0, 1000.0
 CORNERS = np.array([[x, y, z] for x in (1, -1) for y in (0.75, -0.75) for z in (0.5, -0.5)])

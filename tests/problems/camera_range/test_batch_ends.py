@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from debrisest.filters.landmark_model import LandmarkModel
 from debrisest.filters.landmarks.batch_start import StartStatus
 from debrisest.filters.landmarks.cost import Prior
 from debrisest.filters.landmarks.growing_windows import Window, fit, fresh
-from debrisest.filters.landmarks.landmark_model import LandmarkModel
 
 SHORT = [Window(10, 1), Window(20, 1), Window(40, 1)]
 RATE = slice(3, 6)

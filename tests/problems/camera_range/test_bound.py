@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from debrisest.assessment.landmark_bound import landmark_bound
+from debrisest.filters.bound.landmarks import landmark_bound
 
 
 def bound(case, sights):

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from debrisest.assessment.landmark_bound import landmark_bound
 from debrisest.assessment.shape_alignment import best_rotation, rms_distance
+from debrisest.filters.bound.landmarks import landmark_bound
+from debrisest.filters.landmark_model import points_of
 from debrisest.filters.landmarks.cost import Prior, Unknowns, cost
 from debrisest.filters.landmarks.landmark_filter import Annealing, landmark_filter
-from debrisest.filters.landmarks.landmark_model import points_of
 from debrisest.filters.landmarks.update import Belief, Rule
 from debrisest.filters.status import ReplayStatus
-from debrisest.problems.camera_range.sights import landmark_model
+from debrisest.problems.camera_range.projection import landmark_model
 
 MOVING = slice(3, 17)
 

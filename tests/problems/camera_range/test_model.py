@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from debrisest.attitude import quaternion
-from debrisest.problems.camera_range.sights import landmark_model
+from debrisest.problems.camera_range.projection import landmark_model
 
 CASES = {
     "known": {},

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from debrisest.filters.landmark_model import points_of
 from debrisest.filters.landmarks.batch_start import StartStatus
 from debrisest.filters.landmarks.cost import Prior, Unknowns, cost
 from debrisest.filters.landmarks.growing_windows import Window, fresh, place
-from debrisest.filters.landmarks.landmark_model import points_of
 
 POSITION = slice(6, 9)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from debrisest.filters.landmarks.landmark_model import points_of
+from debrisest.filters.landmark_model import points_of
 from debrisest.filters.status import ReplayStatus
 
 

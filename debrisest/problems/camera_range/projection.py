@@ -9,7 +9,7 @@ from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics.pointing import camera_axes
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Rows
+from debrisest.filters.landmark_model import LandmarkModel, Rows
 from debrisest.problems.camera_range import model as motion
 from debrisest.problems.camera_range.model import (
     ATTITUDE_ERROR,

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
-from debrisest.filters.covariance import solve, square_root
 from debrisest.filters.estimates import Estimates, EstimatesWriter
+from debrisest.filters.linear_algebra import solve, square_root
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.model import Model, add, subtract
 

@@ -6,11 +6,11 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data, IntArray
-from debrisest.filters import jacobian
-from debrisest.filters.covariance import solve
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.gate import Gate, Gatekeeper
 from debrisest.filters.iterated import iterate
+from debrisest.filters.kalman import jacobian
+from debrisest.filters.linear_algebra import solve
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.model import Model
 from debrisest.filters.runs import put

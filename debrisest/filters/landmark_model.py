@@ -117,6 +117,11 @@ def split(model: LandmarkModel, measured: Array) -> Sights:
     )
 
 
+def core_of(model: LandmarkModel, state: Array) -> Array:
+    """Core (..., n) of a whole state."""
+    return state[..., : state.shape[-1] - 3 * model.landmarks]
+
+
 def points_of(model: LandmarkModel, state: Array) -> Array:
     """Points (..., N, 3) of a whole state."""
     first = state.shape[-1] - 3 * model.landmarks

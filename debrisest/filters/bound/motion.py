@@ -12,11 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.weights import FALSE_MATCH
 
 _BLOCK = 10  # runs at a time, for the sake of memory
-_OUTLIER = 7.0
-"""A measurement so many sigmas off is an outlier: Gaussian noise would be once in 10^11 times."""
 
 
 class PairedErrors(NamedTuple):
@@ -117,7 +116,7 @@ def paired_errors(
 
 
 def _without_outliers(noise: Array, sigma: Array) -> Array:
-    return np.where(np.abs(noise) > _OUTLIER * sigma, np.nan, noise)
+    return np.where(np.abs(noise) > FALSE_MATCH * sigma, np.nan, noise)
 
 
 def _sigma(covariance: Array) -> Array:

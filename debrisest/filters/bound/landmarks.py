@@ -1,8 +1,9 @@
 """Cramer-Rao bound of a landmark model, as the errors of the efficient estimator.
 
-As in `debrisest.assessment.bound`, the estimator is linearised at the truth and given the noise of
-the very measurements that the others have seen. Here the information is gathered frame by frame, so
-that the memory does not grow with the number of landmarks times that of frames.
+As in `debrisest.filters.bound.motion`, the estimator is linearised at the truth and given the noise
+of the very measurements that the others have seen. Here the information is gathered frame by frame,
+so that the memory does not grow with the number of landmarks times that of frames, and a false
+match is left out with its whole landmark.
 """
 
 from collections.abc import Sequence
@@ -11,12 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Rows, Sights
-from debrisest.filters.scaled import scaled_inverse
+from debrisest.filters.landmark_model import LandmarkModel, Rows, Sights
+from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.weights import FALSE_MATCH
 
 _BLOCK = 16  # frames whose rows are held at a time
-_OUTLIER = 7.0
-"""A measurement so many sigmas off is a false match, which the efficient estimator recognises."""
 
 
 class LandmarkBound(NamedTuple):
@@ -79,7 +79,7 @@ def landmark_bound(
 def _whitened(model: LandmarkModel, rows: Rows, sights: Sights) -> tuple[Array, Array]:
     """Rows (run, epoch, m, n_c + 3 N) and residuals of unit noise, zero where nothing counts."""
     residual = (sights.shown - rows.shown) / model.sigma
-    near = (np.abs(residual) < _OUTLIER) | ~sights.seen
+    near = (np.abs(residual) < FALSE_MATCH) | ~sights.seen
     used = sights.seen & near.all(-1, keepdims=True)
     runs, epochs, landmarks, each = used.shape
     count, n_c = landmarks * each, model.errors

@@ -4,9 +4,9 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.filters import weights
-from debrisest.filters.replay.evidence import Evidence, Linearization, linearize
 from debrisest.filters.replay.gauss_newton import Solution, gauss_newton, move
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay.measured_arc import Evidence, Linearization, linearize
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import put, take
 
 _EARLY_FRAMES, _SOFT_FRAMES = 10, 3

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
-from debrisest.filters.replay.replay_model import ReplayModel
-from debrisest.filters.scaled import scaled_inverse
+from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.replay_model import ReplayModel
 
 _CHUNK = 8  # epochs whose derivatives are held at a time
 
