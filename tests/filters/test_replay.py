@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from debrisest.filters.replay.gauss_newton import gauss_newton
-from debrisest.filters.replay.measured_arc import linearize, weigh
+from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import anchors, replay, smooth
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.status import ReplayStatus
@@ -172,15 +172,15 @@ def test_step_control_only_goes_down():
     shape, slope = (lambda x: x**3), (lambda x: 3 * x**2)
     model = linear_model(shape, slope)
     prior, covariance, measured, truth = data(6, shape)
-    evidence = weigh(model, prior, covariance, measured)
+    arc = measured_arc(model, prior, covariance, measured)
     start = 0.05 * np.sign(truth)
-    costs = [linearize(model, evidence, start, 8).cost]
+    costs = [linearize(model, arc, start, 8).cost]
     for iterations in (2, 4, 8, 60):
-        solution = gauss_newton(model, evidence, start, 8, iterations)
+        solution = gauss_newton(model, arc, start, 8, iterations)
         costs.append(solution.at.cost)
     assert np.all(np.diff(costs, axis=0) <= 0)
     assert solution.converged.all()
-    at_truth = linearize(model, evidence, truth, 8).cost
+    at_truth = linearize(model, arc, truth, 8).cost
     assert np.median(solution.cost - at_truth) < 0
 
 

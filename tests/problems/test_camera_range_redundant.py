@@ -14,8 +14,8 @@ from debrisest.problems.camera_range.redundant_model import (
     POSITION,
     RATE,
     VELOCITY,
+    CameraGeometry,
     Q,
-    Setup,
     error_names,
     measurement,
     process,
@@ -23,7 +23,7 @@ from debrisest.problems.camera_range.redundant_model import (
 )
 
 N = 1.078007613e-3
-KNOWN = Setup(points=4, mean_motion=N, step=5.0, focal_px=1000.0)
+KNOWN = CameraGeometry(points=4, mean_motion=N, step=5.0, focal_px=1000.0)
 RNG = np.random.default_rng(3)
 
 

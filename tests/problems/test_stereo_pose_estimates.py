@@ -6,7 +6,7 @@ import pytest
 from debrisest.assessment.consistency import chart_free
 from debrisest.filters.bound.motion import paired_errors
 from debrisest.filters.replay.gauss_newton import move
-from debrisest.filters.replay.measured_arc import linearize, weigh
+from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay, smooth
 from debrisest.filters.status import ReplayStatus
 from debrisest.problems.stereo_pose import model as stereo_pose
@@ -42,8 +42,8 @@ def test_filter_and_smoother_reach_the_bound(fast):
             size = np.linalg.norm(errors(fast, states)[:, -8:, block], axis=-1).mean(-1)
             least = np.linalg.norm(efficient[:, -8:, block], axis=-1).mean(-1)
             assert np.median(size) < 1.3 * np.median(least)
-    evidence = weigh(fast.model, fast.prior, fast.covariance, fast.measured)
-    at_truth = linearize(fast.model, evidence, fast.truth[:, 0], last).cost
+    arc = measured_arc(fast.model, fast.prior, fast.covariance, fast.measured)
+    at_truth = linearize(fast.model, arc, fast.truth[:, 0], last).cost
     for cost in (filtered.counts["cost"][:, last], final.counts["cost"][:, last]):
         free = chart_free(at_truth, cost, 29)
         assert free.min() > 0
@@ -108,11 +108,11 @@ def test_a_run_alone_is_the_run_in_a_batch(fast):
 
 def test_the_step_promises_what_it_keeps(fast):
     """Near the minimum the cost falls by the decrement."""
-    evidence = weigh(fast.model, fast.prior, fast.covariance, fast.measured)
-    at = linearize(fast.model, evidence, fast.truth[:, 0], 14)
+    arc = measured_arc(fast.model, fast.prior, fast.covariance, fast.measured)
+    at = linearize(fast.model, arc, fast.truth[:, 0], 14)
     step = np.linalg.solve(at.information, at.gradient[..., None])[..., 0]
     promised = (step * at.gradient).sum(-1)
-    after = linearize(fast.model, evidence, move(fast.model, at.state, step), 14).cost
+    after = linearize(fast.model, arc, move(fast.model, at.state, step), 14).cost
     assert np.median(np.abs(at.cost - after - promised) / promised) < 0.3
 
 

@@ -63,7 +63,7 @@ def test_states_and_parts_are_inverse(states, data):
 
 @pytest.mark.parametrize("measures", [None, ["pixels"], ["disparity", "pixels"]])
 def test_rows_come_in_the_order_of_the_model(data, states, measures):
-    known = of_data.setup_of(data, CLOCK, measures)
+    known = of_data.geometry_of(data, CLOCK, measures)
     rows = of_data.measured_of(data, known.shown)
     expected = np.stack([measurement(known, states[:, k], k) for k in range(EPOCHS)], axis=1)
     count = expected.shape[-1] - 3 * known.shown.acceleration

@@ -12,7 +12,7 @@ from debrisest.filters.runs import take
 from debrisest.filters.scan_model import ScanModel
 
 
-class Rule(NamedTuple):
+class AssociationSettings(NamedTuple):
     """How detections are judged, and about what the model is linearised."""
 
     gate: float
@@ -24,7 +24,7 @@ class Rule(NamedTuple):
     truth: Array | None
     """What to linearise about instead, (run, time, n)."""
 
-    def of(self, runs: IntArray) -> "Rule":
+    def of(self, runs: IntArray) -> "AssociationSettings":
         """Return the settings for some runs."""
         return self if self.truth is None else self._replace(truth=self.truth[runs])
 
@@ -57,7 +57,7 @@ def filtered(
     state: Array,
     covariance: Array,
     scans: Array,
-    rule: Rule,
+    settings: AssociationSettings,
     keep: Sequence[int],
 ) -> Estimates:
     """Return the estimates of track 0; `state` (run, track, n), else as `associated`."""
@@ -69,15 +69,15 @@ def filtered(
         for k in range(epochs):
             if len(going) < len(nominal):
                 model, tracks, nominal = model.of(going), take(tracks, going), nominal[going]
-                scans, rule = scans[going], rule.of(going)
+                scans, settings = scans[going], settings.of(going)
             if len(going) == 0:
                 break
             if k > 0:
                 tracks, nominal = _predict(model, tracks, nominal, k - 1)
-            if rule.truth is not None:
-                nominal = rule.truth[:, None, k]
-            tracks, seen = _look(model, tracks, nominal, scans[:, k], rule, k)
-            if rule.relinearise > 0 and (k + 1) % rule.relinearise == 0:
+            if settings.truth is not None:
+                nominal = settings.truth[:, None, k]
+            tracks, seen = _look(model, tracks, nominal, scans[:, k], settings, k)
+            if settings.relinearise > 0 and (k + 1) % settings.relinearise == 0:
                 nominal = tracks.state
             target = tracks.state[:, 0], tracks.covariance[:, 0]
             going = writer.record(k, *target, seen._asdict())
@@ -95,19 +95,24 @@ def _predict(model: ScanModel, tracks: Tracks, nominal: Array, k: int) -> tuple[
 
 
 def _look(
-    model: ScanModel, tracks: Tracks, nominal: Array, scan: Array, rule: Rule, k: int
+    model: ScanModel,
+    tracks: Tracks,
+    nominal: Array,
+    scan: Array,
+    settings: AssociationSettings,
+    k: int,
 ) -> tuple[Tracks, _Seen]:
     """Update by all sensors; `scan` is (run, sensor, detection, d)."""
     shown = model.points(nominal, k)
     h = np.broadcast_to(model.points_jacobian(nominal, k), (*shown.shape, nominal.shape[-1]))
     nothing = np.zeros(len(scan), dtype=np.int64)
     seen = _Seen(nothing.astype(np.float64), nothing, nothing, nothing)
-    for group in _groups(shown.shape[-2], rule.stacked):
+    for group in _groups(shown.shape[-2], settings.stacked):
         lag = tracks.state - nominal
         predicted = shown[:, :, group] + (h[:, :, group] @ lag[:, :, None, :, None])[..., 0]
         innovation = scan[:, None, group] - predicted[..., None, :]
         part = Scan(innovation, h[:, :, group])
-        tracks, judged = update(tracks, part, model.noise, rule.gate, rule.weigh)
+        tracks, judged = update(tracks, part, model.noise, settings.gate, settings.weigh)
         seen = seen.plus(judged, shown.shape[-1])
     return tracks, seen
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.association.joint import joint
-from debrisest.filters.association.recursion import Rule, filtered
+from debrisest.filters.association.recursion import AssociationSettings, filtered
 from debrisest.filters.association.update import Weigh
 from debrisest.filters.association.weights import Validation, nearest, probabilistic
 from debrisest.filters.estimates import Estimates
@@ -55,8 +55,8 @@ def associated(
     """
     gate = np.inf if method == "known" else validation.gate
     weigh = _weigh(validation, method, scans)
-    rule = Rule(gate, weigh, stacked, relinearise if truth is None else 0, truth)
-    return filtered(model, state[:, None], covariance[:, None], scans, rule, keep)
+    settings = AssociationSettings(gate, weigh, stacked, relinearise if truth is None else 0, truth)
+    return filtered(model, state[:, None], covariance[:, None], scans, settings, keep)
 
 
 def jointly_associated(
@@ -76,8 +76,8 @@ def jointly_associated(
     and Scheffe 1983). A track that is NaN is not there.
     """
     weigh = partial(_joint_by_sensor, validation=validation.checked(), d=scans.shape[-1])
-    rule = Rule(validation.gate, weigh, stacked, relinearise=1, truth=None)
-    return filtered(model, state, covariance, scans, rule, keep)
+    settings = AssociationSettings(validation.gate, weigh, stacked, relinearise=1, truth=None)
+    return filtered(model, state, covariance, scans, settings, keep)
 
 
 def labelled(scans: Array, index: IntArray) -> Array:

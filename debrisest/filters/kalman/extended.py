@@ -20,7 +20,7 @@ Stop = Literal["relative_norm", "scaled"]
 _SMALLEST_RATIO = 1e-12
 
 
-class _Rule(NamedTuple):
+class _UpdateSettings(NamedTuple):
     iterations: int
     tolerance: float
     stop: Stop
@@ -81,7 +81,7 @@ def extended(
     A `gate` judges the innovations at x- and has those that it rejects treated as not observed;
     NIS counts the others, where a gate reopened with the prior that it doubted and enlarged.
     """
-    rule = _rule(iterations, tolerance, stop)
+    settings = _settings(iterations, tolerance, stop)
     epochs, components = measurements.shape[1:]
     keeper = None if gate is None else Gatekeeper(gate, model.gate_groups, covariance, components)
     counts, totals = {"updates": 0}, ["repairs"]
@@ -102,18 +102,18 @@ def extended(
                 state, covariance = _predict(model, state, covariance, k - 1)
             y = measurements[:, k]
             prior = _Prior(k, state, covariance, y, ~np.isnan(y))
-            state, covariance, figures = _update(model, rule, keeper, prior)
+            state, covariance, figures = _update(model, settings, keeper, prior)
             going = writer.record(k, state, covariance, figures)
     return writer.estimates()
 
 
-def _rule(iterations: int, tolerance: float, stop: Stop) -> _Rule:
+def _settings(iterations: int, tolerance: float, stop: Stop) -> _UpdateSettings:
     if iterations < 1 or not tolerance > 0.0 or stop not in get_args(Stop):
         raise ValueError(
             f"at least one iteration, a positive tolerance and one of {get_args(Stop)} are "
             f"needed, not {iterations}, {tolerance} and {stop!r}"
         )
-    return _Rule(iterations, tolerance, stop)
+    return _UpdateSettings(iterations, tolerance, stop)
 
 
 def _predict(model: Model, state: Array, covariance: Array, k: int) -> tuple[Array, Array]:
@@ -123,7 +123,7 @@ def _predict(model: Model, state: Array, covariance: Array, k: int) -> tuple[Arr
 
 
 def _update(
-    model: Model, rule: _Rule, keeper: Gatekeeper | None, prior: _Prior
+    model: Model, settings: _UpdateSettings, keeper: Gatekeeper | None, prior: _Prior
 ) -> tuple[Array, Array, Data]:
     """Posterior state and covariance, and what is counted."""
     measured = prior.used
@@ -133,7 +133,7 @@ def _update(
         prior, counts["reopened"] = _gated(model, keeper, prior, innovation, response)
     step = _step(model, prior, innovation, response)
     counts |= {"nis": step.nis.copy(), "nis_dof": prior.used.sum(-1)}
-    state, counts["updates"] = _iterate(model, rule, prior, step)
+    state, counts["updates"] = _iterate(model, settings, prior, step)
     counts["rejected"] = (measured & ~prior.used).sum(-1)
     return state, _joseph(model, prior, step), counts
 
@@ -177,7 +177,9 @@ def _step(model: Model, prior: _Prior, nu: Array, response: Array) -> _Step:
     )
 
 
-def _iterate(model: Model, rule: _Rule, prior: _Prior, step: _Step) -> tuple[Array, IntArray]:
+def _iterate(
+    model: Model, settings: _UpdateSettings, prior: _Prior, step: _Step
+) -> tuple[Array, IntArray]:
     """Posterior state and number of steps; leaves the last step of every run in `step`."""
 
     def again(runs: IntArray) -> None:
@@ -191,13 +193,13 @@ def _iterate(model: Model, rule: _Rule, prior: _Prior, step: _Step) -> tuple[Arr
     def moved(before: Array) -> BoolArray:
         """Whether a step was not short; a run that is not finite ends there."""
         old, new = (model.retract(prior.state, e) for e in (before, step.correction))
-        if rule.stop == "relative_norm":
+        if settings.stop == "relative_norm":
             change, size = np.linalg.norm(new - old, axis=-1), np.linalg.norm(new, axis=-1)
-            return np.asarray(change > rule.tolerance * size)
+            return np.asarray(change > settings.tolerance * size)
         change = np.abs(model.difference(new, old))
-        return np.asarray((change > rule.tolerance * np.sqrt(step.variance)).any(-1))
+        return np.asarray((change > settings.tolerance * np.sqrt(step.variance)).any(-1))
 
-    count = iterate(step.correction, again, moved, rule.iterations)
+    count = iterate(step.correction, again, moved, settings.iterations)
     return model.retract(prior.state, step.correction), count
 
 

@@ -26,7 +26,7 @@ class UnscentedParameters(NamedTuple):
 _SPREAD = UnscentedParameters()
 
 
-class _Rule(NamedTuple):
+class _SigmaPointRule(NamedTuple):
     retract: Callable[[Array, Array], Array]
     scale: float
     mean_weights: Array
@@ -88,7 +88,7 @@ def unscented(
     return writer.estimates()
 
 
-def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _Rule:
+def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _SigmaPointRule:
     """How points are drawn and weighed.
 
     A mean is taken of differences from the central point, so that point's weight plays no part.
@@ -101,7 +101,7 @@ def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _Rule:
     outer = np.full(2 * n_e + 1, 0.5 / scaled)
     central = 1.0 - n_e / scaled + 1.0 - spread.alpha**2 + spread.beta
     values, vectors = np.linalg.eigh(model.measurement_noise)
-    return _Rule(
+    return _SigmaPointRule(
         retract=add if model.difference is subtract else model.retract,
         scale=float(np.sqrt(scaled)),
         mean_weights=outer,
@@ -111,7 +111,7 @@ def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _Rule:
 
 
 def _predict(
-    model: Model, rule: _Rule, state: Array, covariance: Array, k: int, redraw: bool
+    model: Model, rule: _SigmaPointRule, state: Array, covariance: Array, k: int, redraw: bool
 ) -> _Prediction:
     """Sigma points at epoch k before its measurement; at epoch 0 those of the prior itself."""
     start = _draw(rule, state, covariance)
@@ -127,7 +127,7 @@ def _predict(
     return again._replace(repairs=start.repairs + again.repairs)
 
 
-def _draw(rule: _Rule, mean: Array, covariance: Array) -> _Prediction:
+def _draw(rule: _SigmaPointRule, mean: Array, covariance: Array) -> _Prediction:
     root, repaired = square_root(covariance)
     runs, n_e = covariance.shape[:2]
     errors = np.zeros((runs, 2 * n_e + 1, n_e))
@@ -138,7 +138,7 @@ def _draw(rule: _Rule, mean: Array, covariance: Array) -> _Prediction:
 
 
 def _update(
-    model: Model, rule: _Rule, predicted: _Prediction, y: Array, k: int
+    model: Model, rule: _SigmaPointRule, predicted: _Prediction, y: Array, k: int
 ) -> tuple[Array, Array, Array, IntArray]:
     """Posterior state and covariance, NIS, and the number of measured components."""
     shown = model.measurement(predicted.points, k)
@@ -164,7 +164,7 @@ def _update(
     return model.retract(predicted.mean, correction), covariance, nis, measured.sum(-1)
 
 
-def _second_moment(rule: _Rule, deviations: Array) -> Array:
+def _second_moment(rule: _SigmaPointRule, deviations: Array) -> Array:
     """D^T W D of deviations D (run, point, n_e), symmetric to the last bit."""
     central, outer = rule.covariance_weights[0], rule.covariance_weights[1]
     moment: Array = outer * _gram(deviations) + (central - outer) * _gram(deviations[:, :1])

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.landmark_model import LandmarkModel, Sights
+from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.landmarks.cost import Prior, Unknowns
 from debrisest.filters.landmarks.growing_windows import Fit, Window, fit, fresh
 from debrisest.filters.linear_algebra import scaled_inverse
@@ -15,11 +15,11 @@ from debrisest.outcome import Outcome
 
 _PRUNE = 100.0
 """Excess of cost beyond the other solution's at which the mirror is given up early."""
-_TOLD_APART = 20.0
+_DECISIVE = 20.0
 """Difference of the costs of two solutions, twice the logarithm of their odds, that decides."""
 _VAGUE = 0.03
 """Sigma of the points by their distance from the centre, above which the shape is not known."""
-_CONFIRMED_SHARE, _CONFIRMED_SIGHTS = 0.6, 5
+_CONFIRMED_SHARE, _CONFIRMED_SIGHTINGS = 0.6, 5
 _FEWEST = 4
 
 
@@ -82,17 +82,17 @@ class Started(NamedTuple):
 
 class _Problem(NamedTuple):
     model: LandmarkModel
-    sights: Sights
+    observed: Observations
     prior: Prior
     batch: Batch
 
     def of(self, runs: IntArray) -> "_Problem":
-        part = self.model.of(runs), self.sights.at(runs), take(self.prior, runs)
+        part = self.model.of(runs), self.observed.at(runs), take(self.prior, runs)
         return _Problem(*part, self.batch)
 
 
 def batch_start(
-    model: LandmarkModel, sights: Sights, parameters: Array, covariance: Array, batch: Batch
+    model: LandmarkModel, observed: Observations, parameters: Array, covariance: Array, batch: Batch
 ) -> Started:
     """Estimate the start of every run from its first windows.
 
@@ -101,7 +101,7 @@ def batch_start(
     """
     runs = len(parameters)
     mean = np.concatenate([parameters, np.zeros((runs, 3 * model.landmarks))], axis=-1)
-    task = _Problem(model, sights, Prior(mean, scaled_inverse(covariance)), batch)
+    task = _Problem(model, observed, Prior(mean, scaled_inverse(covariance)), batch)
     best, other = _solve(task, parameters)
     restarts = np.zeros(runs, dtype=np.int64)
     for attempt in range(batch.restarts):
@@ -116,7 +116,7 @@ def batch_start(
         restarts[bad] = attempt + 1
     last = np.full(runs, batch.windows[-1].last)
     gap = _gap(best, other)
-    unclear = np.flatnonzero((gap < _TOLD_APART) | _vague(best))
+    unclear = np.flatnonzero((gap < _DECISIVE) | _vague(best))
     if len(unclear) and batch.extended:
         _extend(task, best, other, unclear, gap)
         last[unclear] = batch.extended[-1].last
@@ -127,7 +127,7 @@ def _solve(task: _Problem, parameters: Array) -> tuple[Fit, Fit]:
     """Better one of the solution and its mirror, and the other one."""
     model, batch = task.model, task.batch
     at, prior = fresh(model, parameters, task.prior)
-    best = fit(model, task.sights, at, prior, batch.windows, batch.iterations, batch.robust)
+    best = fit(model, task.observed, at, prior, batch.windows, batch.iterations, batch.robust)
     best, other = _ordered(best, _mirrored(task, best, batch.windows[2::2]))
     bad = np.flatnonzero(~(best.ratio < batch.limit))
     if len(bad) and batch.mirrored:
@@ -161,10 +161,10 @@ def _mirrored(task: _Problem, best: Fit, windows: Sequence[Window]) -> Fit:
     for window in dict.fromkeys([*windows, batch.windows[-1]]):
         part = task.of(runs)
         found = fit(
-            *(part.model, part.sights, at, take(best.prior, runs)),
+            *(part.model, part.observed, at, take(best.prior, runs)),
             *([window], batch.iterations, batch.robust),
         )
-        excess = found.found.freedom * (found.ratio - best.ratio[runs])
+        excess = found.found.dof * (found.ratio - best.ratio[runs])
         kept = np.flatnonzero(excess < _PRUNE)
         found, runs = take(found, kept), runs[kept]
         if len(runs) == 0:
@@ -185,7 +185,7 @@ def _extend(task: _Problem, best: Fit, other: Fit, runs: IntArray, gap: Array) -
         if len(chosen):
             part, begin = task.of(chosen), take(old, chosen)
             found = fit(
-                *(part.model, part.sights, begin.at, begin.prior),
+                *(part.model, part.observed, begin.at, begin.prior),
                 *(batch.extended, batch.iterations, batch.robust),
             )
             put(old, chosen, found)
@@ -231,15 +231,15 @@ def _handed_on(
     task: _Problem, best: Fit, gap: Array, last: IntArray, restarts: IntArray
 ) -> Started:
     batch = task.batch
-    core, freedom = task.model.start(best.at.parameters)
+    core, by_parameters = task.model.start(best.at.parameters)
     covariance = batch.inflation * scaled_inverse(best.found.information)
-    status = np.where(gap < _TOLD_APART, StartStatus.AMBIGUOUS, StartStatus.FOUND)
+    status = np.where(gap < _DECISIVE, StartStatus.AMBIGUOUS, StartStatus.FOUND)
     present = _confirmed(best)
     status = np.where(present.sum(-1) < _FEWEST, StartStatus.TOO_FEW, status)
     status = np.where(best.ratio < batch.limit, status, StartStatus.REJECTED)
-    n_c, n_x = freedom.shape[-2:]
+    n_c, n_x = by_parameters.shape[-2:]
     whole = np.zeros((len(core), n_c + covariance.shape[-1] - n_x, covariance.shape[-1]))
-    whole[:, :n_c, :n_x] = freedom
+    whole[:, :n_c, :n_x] = by_parameters
     whole[:, n_c:, n_x:] = np.repeat(present, 3, axis=-1)[..., None] * np.eye(3 * present.shape[-1])
     spread = whole @ covariance @ np.swapaxes(whole, -1, -2)
     return Started(
@@ -250,5 +250,5 @@ def _handed_on(
 def _confirmed(best: Fit) -> BoolArray:
     """Landmarks of which most sightings agree with the fit."""
     seen, agreeing = best.found.sightings, best.found.agreeing
-    enough = (agreeing > _CONFIRMED_SHARE * seen) & (seen >= _CONFIRMED_SIGHTS)
+    enough = (agreeing > _CONFIRMED_SHARE * seen) & (seen >= _CONFIRMED_SIGHTINGS)
     return np.asarray(best.at.placed & enough)

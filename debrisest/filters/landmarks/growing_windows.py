@@ -11,7 +11,7 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.descent import Damping, descend
-from debrisest.filters.landmark_model import LandmarkModel, Sights
+from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.landmarks.cost import Cost, Prior, Unknowns, cost
 from debrisest.filters.linear_algebra import scaled_solve
 from debrisest.filters.runs import take
@@ -44,7 +44,7 @@ class Fit(NamedTuple):
     @property
     def ratio(self) -> Array:
         """Cost per degree of freedom (run,), about one for the right minimum."""
-        return np.asarray(self.found.value / np.maximum(self.found.freedom, 1))
+        return np.asarray(self.found.value / np.maximum(self.found.dof, 1))
 
 
 def fresh(model: LandmarkModel, parameters: Array, prior: Prior) -> tuple[Unknowns, Prior]:
@@ -57,7 +57,7 @@ def fresh(model: LandmarkModel, parameters: Array, prior: Prior) -> tuple[Unknow
 
 def fit(
     model: LandmarkModel,
-    sights: Sights,
+    observed: Observations,
     at: Unknowns,
     prior: Prior,
     windows: Sequence[Window],
@@ -69,24 +69,24 @@ def fit(
     The last one, from which no other will go on, may take `_PATIENCE` times as many.
     """
     for window in windows:
-        at, prior = place(model, sights, at, prior, window.last)
+        at, prior = place(model, observed, at, prior, window.last)
         most = iterations if window is not windows[-1] else _PATIENCE * iterations
-        found = _descend(model, sights, at, prior, window.frames, most, robust)
+        found = _descend(model, observed, at, prior, window.frames, most, robust)
     return found
 
 
 def place(
-    model: LandmarkModel, sights: Sights, at: Unknowns, prior: Prior, last: int
+    model: LandmarkModel, observed: Observations, at: Unknowns, prior: Prior, last: int
 ) -> tuple[Unknowns, Prior]:
     """Give a place to the landmarks that were seen for the first time up to epoch ``last``."""
-    seen = model.placeable(sights.seen[:, : last + 1])
+    seen = model.placeable(observed.seen[:, : last + 1])
     new = seen.any(1) & ~at.placed
     if not new.any():
         return at, prior
-    first = _typical_sighting(sights.shown[..., : model.directions], seen)
+    first = _typical_sighting(observed.shown[..., : model.directions], seen)
     cores, _ = model.trajectory(model.start(at.parameters)[0], last)
     runs, landmarks = np.arange(len(first))[:, None], np.arange(first.shape[1])
-    points, _, _ = model.place(cores[runs, first], sights.shown[runs, first, landmarks], first)
+    points, _, _ = model.place(cores[runs, first], observed.shown[runs, first, landmarks], first)
     found = Unknowns(at.parameters, np.where(new[..., None], points, at.points), at.placed | new)
     n_x = at.parameters.shape[-1]
     mean = prior.mean.copy()
@@ -111,7 +111,7 @@ def _typical_sighting(directions: Array, seen: BoolArray) -> IntArray:
 
 def _descend(
     model: LandmarkModel,
-    sights: Sights,
+    observed: Observations,
     at: Unknowns,
     prior: Prior,
     frames: IntArray,
@@ -122,10 +122,10 @@ def _descend(
 
     def trial(best: Fit, runs: IntArray, step: Array) -> Fit:
         moved, part = take(best.at, runs).moved(step), take(prior, runs)
-        found = cost(model.of(runs), sights.at(runs), part, moved, frames, robust)
+        found = cost(model.of(runs), observed.at(runs), part, moved, frames, robust)
         return Fit(moved, part, _usable(found))
 
-    first = Fit(at, prior, _usable(cost(model, sights, prior, at, frames, robust)))
+    first = Fit(at, prior, _usable(cost(model, observed, prior, at, frames, robust)))
     return descend(first, lambda fit: fit.found.value, _step, trial, _DAMPING, iterations)[0]
 
 

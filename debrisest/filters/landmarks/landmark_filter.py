@@ -11,9 +11,9 @@ import numpy as np
 
 from debrisest.arrays import BoolArray, Data, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
-from debrisest.filters.landmark_model import LandmarkModel, Sights, joined
+from debrisest.filters.landmark_model import LandmarkModel, Observations, joined
 from debrisest.filters.landmarks.tracks import Tracks, begin, inserted, judged, without
-from debrisest.filters.landmarks.update import Belief, Rule, update
+from debrisest.filters.landmarks.update import Belief, UpdateSettings, update
 from debrisest.filters.runs import take
 from debrisest.filters.status import ReplayStatus
 
@@ -34,8 +34,8 @@ def landmark_filter(
     belief: Belief,
     present: BoolArray,
     used_up: IntArray,
-    sights: Sights,
-    rule: Rule,
+    observed: Observations,
+    settings: UpdateSettings,
     annealing: Annealing = Annealing(),  # noqa: B008
     keep: Sequence[int] = (),
 ) -> Estimates:
@@ -46,21 +46,21 @@ def landmark_filter(
     """
     counts, totals = {"rejected": 0, "updates": 0}, ["dropped"]
     start = joined(belief.core, belief.points), belief.covariance
-    epochs = sights.seen.shape[1]
+    epochs = observed.seen.shape[1]
     writer = EstimatesWriter(model.error_names, *start, epochs, keep, counts, totals, ReplayStatus)
     tracks, going = begin(present), writer.runs
     with np.errstate(all="ignore"):
         for k in range(epochs):
             if len(going) < len(used_up):
-                model, sights, used_up = model.of(going), sights.at(going), used_up[going]
+                model, observed, used_up = model.of(going), observed.at(going), used_up[going]
                 belief, tracks = take(belief, going), take(tracks, going)
             if len(going) == 0:
                 break
             if k > 0:
                 belief = predict(model, belief)
-            shown, active = sights.at(slice(None), k), k > used_up
+            shown, active = observed.at(slice(None), k), k > used_up
             belief, tracks, figures = _frame(
-                model, belief, tracks, shown, k, active, rule, annealing
+                model, belief, tracks, shown, k, active, settings, annealing
             )
             confirmed = np.where(tracks.confirmed[..., None], belief.points, np.nan)
             going = writer.record(
@@ -83,21 +83,21 @@ def _frame(
     model: LandmarkModel,
     belief: Belief,
     tracks: Tracks,
-    sights: Sights,
+    observed: Observations,
     k: int,
     active: BoolArray,
-    rule: Rule,
+    settings: UpdateSettings,
     annealing: Annealing,
 ) -> tuple[Belief, Tracks, Data]:
     """Update, then drop and insert landmarks; and what is counted."""
-    seen = sights.seen & active[:, None, None]
+    seen = observed.seen & active[:, None, None]
     shown: BoolArray = np.asarray(seen.any(-1))
-    usable = sights._replace(
-        seen=seen & tracks.present[..., None], common_seen=sights.common_seen & active[:, None]
+    usable = observed._replace(
+        seen=seen & tracks.present[..., None], common_seen=observed.common_seen & active[:, None]
     )
     if not active.any():
         return belief, tracks, {}
-    belief, frame = update(model, belief, usable, k, rule, annealing.factor(k))
+    belief, frame = update(model, belief, usable, k, settings, annealing.factor(k))
     new = model.placeable(seen) & ~tracks.present
     before = tracks.present
     tracks = judged(tracks, shown & before, frame.accepted)
@@ -105,6 +105,6 @@ def _frame(
     if lost.any():
         belief = without(belief, lost)
     if new.any():
-        belief = inserted(model, belief, sights, new, k)
+        belief = inserted(model, belief, observed, new, k)
         tracks = tracks._replace(present=tracks.present | new)
     return belief, tracks, frame._asdict() | {"dropped": lost.sum(-1)}

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.landmark_model import LandmarkModel, Sights
+from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.landmarks.update import Belief
 
 CONFIRMING, PATIENCE = 5, 6
@@ -55,7 +55,7 @@ def without(belief: Belief, lost: BoolArray) -> Belief:
 
 
 def inserted(
-    model: LandmarkModel, belief: Belief, sights: Sights, new: BoolArray, k: int
+    model: LandmarkModel, belief: Belief, observed: Observations, new: BoolArray, k: int
 ) -> Belief:
     """Belief with new landmarks (run, N), their errors correlated with the core's.
 
@@ -64,7 +64,7 @@ def inserted(
     """
     runs, n_c = len(new), model.errors
     cores = np.broadcast_to(belief.core[:, None], (*new.shape, belief.core.shape[-1]))
-    points, by_core, own = model.place(cores, sights.shown, np.full(new.shape, k))
+    points, by_core, own = model.place(cores, observed.shown, np.full(new.shape, k))
     extend = np.zeros_like(belief.covariance)
     index = np.arange(extend.shape[-1])
     extend[:, index, index] = _kept(belief, new)

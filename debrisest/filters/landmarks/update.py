@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.gate import chi_square_limits, group_squares
 from debrisest.filters.iterated import iterate
-from debrisest.filters.landmark_model import LandmarkModel, Sights
+from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.linear_algebra import solve
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.runs import put, take
@@ -21,7 +21,7 @@ class Belief(NamedTuple):
     covariance: Array
 
 
-class Rule(NamedTuple):
+class UpdateSettings(NamedTuple):
     """How a frame is used."""
 
     iterations: int = 3
@@ -62,25 +62,25 @@ class _Step(NamedTuple):
 def update(
     model: LandmarkModel,
     prior: Belief,
-    sights: Sights,
+    observed: Observations,
     k: int,
-    rule: Rule,
+    settings: UpdateSettings,
     inflation: float = 1.0,
 ) -> tuple[Belief, Frame]:
-    """Update with frame k, whose ``sights (run, ...)`` may be masked; noise variance inflated.
+    """Update with frame k, whose ``observed (run, ...)`` may be masked; noise variance inflated.
 
     Gauss-Newton steps x_i+1 = x- [+] K_i (nu(x_i) - H_i (x- [-] x_i)). The gate judges each
     landmark, and each common row by itself, by its innovation at x-. The covariance update is
     Joseph's, multiplied out: ``P - K W^T - W K^T`` with ``W = P H^T - K S / 2`` costs a quarter and
     depends on errors of the gain in second order only, too.
     """
-    linear = _linearise(model, prior.core, prior.points, sights, k, inflation)
-    used, accepted = _gated(model, prior, sights, linear, rule)
-    rejected = sights.seen.sum((-2, -1)) + sights.common_seen.sum(-1) - used.sum(-1)
+    linear = _linearise(model, prior.core, prior.points, observed, k, inflation)
+    used, accepted = _gated(model, prior, observed, linear, settings)
+    rejected = observed.seen.sum((-2, -1)) + observed.common_seen.sum(-1) - used.sum(-1)
     step = _gauss_newton(prior, linear, used)
     innovation = np.where(used, linear.innovation, 0.0)
     nis = (innovation * solve(step.total, innovation[..., None])[..., 0]).sum(-1)
-    count = _iterate(model, prior, sights, k, rule, inflation, used, step)
+    count = _iterate(model, prior, observed, k, settings, inflation, used, step)
     core, points = _moved(model, prior, step.correction)
     change = step.gain @ np.swapaxes(step.cross - 0.5 * step.gain @ step.total, -1, -2)
     covariance = prior.covariance - change - np.swapaxes(change, -1, -2)
@@ -90,9 +90,9 @@ def update(
 def _iterate(
     model: LandmarkModel,
     prior: Belief,
-    sights: Sights,
+    observed: Observations,
     k: int,
-    rule: Rule,
+    settings: UpdateSettings,
     inflation: float,
     used: BoolArray,
     step: _Step,
@@ -103,7 +103,7 @@ def _iterate(
 
     def again(runs: IntArray) -> None:
         core, points = _moved(model, prior, step.correction)
-        linear = _linearise(model, core, points, sights, k, inflation)
+        linear = _linearise(model, core, points, observed, k, inflation)
         shift = (prior.points - points).reshape(len(core), -1)
         lag = np.concatenate([model.difference(prior.core, core), shift], axis=-1)
         residual = linear.innovation - (linear.response @ lag[..., None])[..., 0]
@@ -113,14 +113,19 @@ def _iterate(
     def moved(before: Array) -> BoolArray:
         left = variance - (step.cross * step.gain).sum(-1)
         sigma = np.sqrt(np.maximum(left, 1e-12 * np.abs(variance)))
-        far = np.abs(step.correction - before) > rule.tolerance * sigma
+        far = np.abs(step.correction - before) > settings.tolerance * sigma
         return np.asarray((far & anything).any(-1))
 
-    return iterate(step.correction, again, moved, rule.iterations)
+    return iterate(step.correction, again, moved, settings.iterations)
 
 
 def _linearise(
-    model: LandmarkModel, core: Array, points: Array, sights: Sights, k: int, inflation: float
+    model: LandmarkModel,
+    core: Array,
+    points: Array,
+    observed: Observations,
+    k: int,
+    inflation: float,
 ) -> _Linear:
     rows = model.rows(core[:, None], points[:, None], np.array([k]))
     runs, landmarks, each, n_c = *rows.shown[:, 0].shape, model.errors
@@ -134,8 +139,8 @@ def _linearise(
     response[:, count:, :n_c] = rows.common_by_core[:, 0]
     innovation = np.concatenate(
         [
-            (sights.shown - rows.shown[:, 0]).reshape(runs, count),
-            sights.common - rows.common[:, 0],
+            (observed.shown - rows.shown[:, 0]).reshape(runs, count),
+            observed.common - rows.common[:, 0],
         ],
         axis=-1,
     )
@@ -148,15 +153,19 @@ def _linearise(
 
 
 def _gated(
-    model: LandmarkModel, prior: Belief, sights: Sights, linear: _Linear, rule: Rule
+    model: LandmarkModel,
+    prior: Belief,
+    observed: Observations,
+    linear: _Linear,
+    settings: UpdateSettings,
 ) -> tuple[BoolArray, BoolArray]:
     """Components to use (run, m), and landmarks seen that passed (run, N)."""
-    runs, landmarks, each = sights.seen.shape
-    seen = np.concatenate([sights.seen.reshape(runs, -1), sights.common_seen], axis=-1)
-    shown: BoolArray = np.asarray(sights.seen.any(-1))
-    if rule.false_alarm is None:
+    runs, landmarks, each = observed.seen.shape
+    seen = np.concatenate([observed.seen.reshape(runs, -1), observed.common_seen], axis=-1)
+    shown: BoolArray = np.asarray(observed.seen.any(-1))
+    if settings.false_alarm is None:
         return seen, shown
-    limits = chi_square_limits(rule.false_alarm, each)
+    limits = chi_square_limits(settings.false_alarm, each)
     near = _near(prior, linear, slice(landmarks * each, None), limits[1])
     used = seen.copy()
     used[:, landmarks * each :] &= near
@@ -165,8 +174,8 @@ def _gated(
     first = np.arange(landmarks * each).reshape(landmarks, each)
     blocks = _blocks(model, prior, linear, first)
     total = blocks + linear.noise[:, first[:, :, None], first[:, None, :]]
-    squares = group_squares(sights.seen, linear.innovation[:, first], total)
-    accepted: BoolArray = shown & (squares <= limits[sights.seen.sum(-1)])
+    squares = group_squares(observed.seen, linear.innovation[:, first], total)
+    accepted: BoolArray = shown & (squares <= limits[observed.seen.sum(-1)])
     used[:, : landmarks * each] &= np.repeat(accepted, each, axis=-1)
     return used, accepted
 

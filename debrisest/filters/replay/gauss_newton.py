@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.descent import Damping, descend
 from debrisest.filters.linear_algebra import scaled_solve
-from debrisest.filters.replay.measured_arc import Evidence, Linearization, linearize
+from debrisest.filters.replay.measured_arc import Linearization, MeasuredArc, linearize
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import take
 
@@ -36,7 +36,7 @@ class Solution(NamedTuple):
 
 
 def gauss_newton(
-    model: ReplayModel, evidence: Evidence, state: Array, last: int, iterations: int
+    model: ReplayModel, arc: MeasuredArc, state: Array, last: int, iterations: int
 ) -> Solution:
     """Minimise the cost of epochs 0 to ``last`` from ``state (run, n)`` at epoch 0.
 
@@ -46,13 +46,13 @@ def gauss_newton(
     """
 
     def step(at: Linearization, runs: IntArray, damping: Array) -> tuple[Array, Array]:
-        return _step(at, evidence.information[runs], damping)
+        return _step(at, arc.information[runs], damping)
 
     def trial(best: Linearization, runs: IntArray, step: Array) -> Linearization:
         part = model.of(runs)
-        return linearize(part, take(evidence, runs), move(part, best.state[runs], step), last)
+        return linearize(part, take(arc, runs), move(part, best.state[runs], step), last)
 
-    first = linearize(model, evidence, state, last)
+    first = linearize(model, arc, state, last)
     return Solution(*descend(first, lambda at: at.cost, step, trial, _DAMPING, iterations))
 
 

@@ -16,7 +16,7 @@ from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.replay.cost import cost_of
 from debrisest.filters.replay.frame_update import FRAME_ITERATIONS, Belief, predict, update
 from debrisest.filters.replay.gauss_newton import Solution, gauss_newton, move
-from debrisest.filters.replay.measured_arc import Evidence, weigh
+from debrisest.filters.replay.measured_arc import MeasuredArc, measured_arc
 from debrisest.filters.replay.robust import robust_newton
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import take
@@ -58,8 +58,8 @@ def replay(
     known = covariance, epochs, keep, counts
     writer = EstimatesWriter(model.error_names, prior, *known, outcomes=ReplayStatus)
     with np.errstate(all="ignore"):
-        evidence = weigh(model, prior, covariance, measured)
-        _filter(model, evidence, _schedule(evidence, ratio, also), gate, writer, reference)
+        arc = measured_arc(model, prior, covariance, measured)
+        _filter(model, arc, _schedule(arc, ratio, also), gate, writer, reference)
     return writer.estimates()
 
 
@@ -84,19 +84,19 @@ def smooth(
     writer = EstimatesWriter(model.error_names, *end, last + 1, keep, counts, outcomes=ReplayStatus)
     model = model.of(writer.runs)
     with np.errstate(all="ignore"):
-        evidence = take(weigh(model, prior, covariance, measured), writer.runs)
+        arc = take(measured_arc(model, prior, covariance, measured), writer.runs)
         start = model.rewind(end[0][writer.runs], last)
         if gate:
-            solution = robust_newton(model, evidence, [start], last, last, _SMOOTHER_ITERATIONS)
+            solution = robust_newton(model, arc, [start], last, last, _SMOOTHER_ITERATIONS)
         else:
-            solution = gauss_newton(model, evidence, start, last, _SMOOTHER_ITERATIONS)
+            solution = gauss_newton(model, arc, start, last, _SMOOTHER_ITERATIONS)
         best = move(model, solution.at.state, solution.step)
         states, sensitivity = model.trajectory(best, 0, last)
         spread = scaled_inverse(solution.at.information)
         for k in range(last + 1):
             transition = model.transition(sensitivity[:, k], 0, k)
             writer.write(k, states[:, k], transition @ spread @ np.swapaxes(transition, -1, -2))
-        writer.count(last, _costs(model, evidence, writer, last, best, reference))
+        writer.count(last, _costs(model, arc, writer, last, best, reference))
     writer.conclude(_status(solution))
     found = writer.estimates()
     return found._replace(
@@ -116,57 +116,57 @@ def anchors(first: int, epochs: int, ratio: float = RATIO) -> list[int]:
     return result
 
 
-def _schedule(evidence: Evidence, ratio: float, also: Sequence[int]) -> list[int]:
+def _schedule(arc: MeasuredArc, ratio: float, also: Sequence[int]) -> list[int]:
     """Epochs of the replays; the first of them is the first that any run has measurements of."""
-    epochs = evidence.seen.shape[1]
-    measured = np.flatnonzero(evidence.seen.any(axis=(0, 2)))
+    epochs = arc.seen.shape[1]
+    measured = np.flatnonzero(arc.seen.any(axis=(0, 2)))
     first = int(measured[0]) if len(measured) else epochs
     return sorted({*anchors(first, epochs, ratio), *(k for k in also if first <= k < epochs)})
 
 
 def _filter(
     model: ReplayModel,
-    evidence: Evidence,
+    arc: MeasuredArc,
     schedule: list[int],
     gate: bool,
     writer: EstimatesWriter,
     reference: Array | None,
 ) -> None:
     going = writer.runs
-    back = model.inverse_chart(evidence.prior)
-    belief = Belief(evidence.prior, np.swapaxes(back, -1, -2) @ evidence.information @ back)
-    for k in range(evidence.measured.shape[1]):
+    back = model.inverse_chart(arc.prior)
+    belief = Belief(arc.prior, np.swapaxes(back, -1, -2) @ arc.information @ back)
+    for k in range(arc.measured.shape[1]):
         if len(going) < len(belief.state):
-            model, belief, evidence = model.of(going), take(belief, going), take(evidence, going)
+            model, belief, arc = model.of(going), take(belief, going), take(arc, going)
         if k > 0:
             belief = predict(model, belief, k)
         iterations = 1 if k in schedule else FRAME_ITERATIONS
-        belief, frame = update(model, belief, evidence, k, iterations, gate)
+        belief, frame = update(model, belief, arc, k, iterations, gate)
         figures: Data = frame._asdict()
         if k in schedule:
-            belief, solution = _replayed(model, belief, evidence, k, schedule, gate)
+            belief, solution = _replayed(model, belief, arc, k, schedule, gate)
             figures["cost"] = solution.cost
             writer.conclude(_status(solution))
         back = model.inverse_chart(belief.state)
         spread = back @ scaled_inverse(belief.information) @ np.swapaxes(back, -1, -2)
         if writer.keeps(k):
             start = model.rewind(belief.state, k)
-            figures |= _costs(model, evidence, writer, k, start, reference)
+            figures |= _costs(model, arc, writer, k, start, reference)
         going = writer.record(k, belief.state, spread, figures)
 
 
 def _costs(
     model: ReplayModel,
-    evidence: Evidence,
+    arc: MeasuredArc,
     writer: EstimatesWriter,
     last: int,
     start: Array,
     reference: Array | None,
 ) -> Data:
     """Costs of the estimate's motion and of the reference; what has no weight counts in neither."""
-    costs = {"cost": cost_of(model, evidence, start, last)}
+    costs = {"cost": cost_of(model, arc, start, last)}
     if reference is not None:
-        costs["cost_of_truth"] = cost_of(model, evidence, reference[writer.runs], last)
+        costs["cost_of_truth"] = cost_of(model, arc, reference[writer.runs], last)
     return costs
 
 
@@ -175,19 +175,19 @@ def _status(solution: Solution) -> IntArray:
 
 
 def _replayed(
-    model: ReplayModel, belief: Belief, evidence: Evidence, k: int, schedule: list[int], gate: bool
+    model: ReplayModel, belief: Belief, arc: MeasuredArc, k: int, schedule: list[int], gate: bool
 ) -> tuple[Belief, Solution]:
     """Belief of epoch k by a replay of everything measured so far."""
     number = schedule.index(k)
     starts = [] if number == 0 else [model.rewind(belief.state, k)]
     if number == 0 or (gate and number < _FRESH_STARTS):
-        shown = np.where(evidence.seen[:, k], evidence.measured[:, k], np.nan)
-        starts.append(model.start(evidence.prior, shown * model.sigma, k))
+        shown = np.where(arc.seen[:, k], arc.measured[:, k], np.nan)
+        starts.append(model.start(arc.prior, shown * model.sigma, k))
     iterations = _START_ITERATIONS if number < _START_ANCHORS else _ANCHOR_ITERATIONS
     if gate:
-        solution = robust_newton(model, evidence, starts, k, k - schedule[0] + 1, iterations)
+        solution = robust_newton(model, arc, starts, k, k - schedule[0] + 1, iterations)
     else:
-        solution = gauss_newton(model, evidence, starts[0], k, iterations)
+        solution = gauss_newton(model, arc, starts[0], k, iterations)
     at = solution.at
     transition = model.transition(at.last_sensitivity, 0, k)
     to_chart = model.chart(at.last_state) @ transition

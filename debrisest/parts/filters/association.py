@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from debrisest.filters.association.single import associated, jointly_associated
-from debrisest.filters.association.weights import Misses, Validation
+from debrisest.filters.association.weights import Validation, inverse_unit_ball, unit_ball
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.scan_model import ScanModel
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
@@ -23,14 +23,15 @@ class _Validating(FilterPart):
     gate: Positive = 9.21
     detection_probability: Probability = 0.99
     gate_probability: Probability | None = None
-    misses: Misses = "corrected"
+    gate_volume: Literal["unit_ball", "inverse_unit_ball"] = "unit_ball"
     stacked: bool = False
     keep_s: KeptTimes = []
 
     @property
     def validation(self) -> Validation:
         """What the numerics call these keys."""
-        return Validation(self.gate, self.detection_probability, self.misses, self.gate_probability)
+        ball = unit_ball if self.gate_volume == "unit_ball" else inverse_unit_ball
+        return Validation(self.gate, self.detection_probability, self.gate_probability, ball)
 
 
 class AssociationFilter(_Validating):

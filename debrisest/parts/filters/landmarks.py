@@ -14,7 +14,7 @@ from debrisest.filters.landmark_model import LandmarkModel, core_of, split
 from debrisest.filters.landmarks.batch_start import Batch, Started, StartStatus, batch_start
 from debrisest.filters.landmarks.growing_windows import Window
 from debrisest.filters.landmarks.landmark_filter import Annealing, landmark_filter
-from debrisest.filters.landmarks.update import Belief, Rule
+from debrisest.filters.landmarks.update import Belief, UpdateSettings
 from debrisest.filters.status import ReplayStatus
 from debrisest.outcome import sentences
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
@@ -39,8 +39,8 @@ class _LandmarkFilter(FilterPart):
     gate: bool = True
     keep_s: KeptTimes = []
 
-    def _rule(self) -> Rule:
-        return Rule(iterations=self.iterations, false_alarm=GATE if self.gate else None)
+    def _settings(self) -> UpdateSettings:
+        return UpdateSettings(iterations=self.iterations, false_alarm=GATE if self.gate else None)
 
 
 class LandmarkBatch(_LandmarkFilter):
@@ -89,11 +89,11 @@ class LandmarkBatch(_LandmarkFilter):
 
     def run(self, model: LandmarkModel, given: Given) -> Estimates:
         """Return the estimates of all epochs; up to the batch's end they are the batch's own."""
-        sights, held = split(model, given.measured), model.held
+        observed, held = split(model, given.measured), model.held
         with np.errstate(all="ignore"):
             started = batch_start(
                 model,
-                sights,
+                observed,
                 model.parameters(core_of(model, given.state)),
                 given.covariance[:, held:, held:],
                 self._batch(given.clock),
@@ -103,8 +103,8 @@ class LandmarkBatch(_LandmarkFilter):
             Belief(started.core, started.points, started.covariance),
             started.present,
             started.last,
-            sights,
-            self._rule(),
+            observed,
+            self._settings(),
             keep=kept_epochs(self.keep_s, given.clock),
         )
         counts = {"restarts": started.restarts, "fit": started.ratio}
@@ -130,21 +130,21 @@ class LandmarkFilter(_LandmarkFilter):
 
     def run(self, model: LandmarkModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
-        sights, held = split(model, given.measured), model.held
-        core, freedom = model.start(model.parameters(core_of(model, given.state)))
+        observed, held = split(model, given.measured), model.held
+        core, by_parameters = model.start(model.parameters(core_of(model, given.state)))
         runs, n_e = given.covariance.shape[:2]
         n_c = model.errors
         covariance = np.zeros((runs, n_e, n_e))
         inner = given.covariance[:, held:n_c, held:n_c]
-        covariance[:, :n_c, :n_c] = freedom @ inner @ np.swapaxes(freedom, -1, -2)
+        covariance[:, :n_c, :n_c] = by_parameters @ inner @ np.swapaxes(by_parameters, -1, -2)
         covariance[:, :held, :held] += given.covariance[:, :held, :held]
         found = landmark_filter(
             model,
             Belief(core, np.zeros((runs, model.landmarks, 3)), covariance),
             np.zeros((runs, model.landmarks), dtype=np.bool_),
             np.full(runs, -1),
-            sights,
-            self._rule(),
+            observed,
+            self._settings(),
             Annealing(self.annealing, self.annealing_s / given.clock.step),
             keep=kept_epochs(self.keep_s, given.clock),
         )

@@ -29,9 +29,9 @@ from debrisest.problems.camera_range.model import (
     VELOCITY,
     VELOCITY_ERROR,
     CameraAttitude,
+    CameraRangeGeometry,
     Q,
     RangeModel,
-    Setup,
 )
 from debrisest.problems.camera_range.projection import landmark_model
 from debrisest.problems.camera_range.score import scores
@@ -39,8 +39,8 @@ from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 from debrisest.target.start_frame import in_start_frame
 
 _SCORED = np.r_[RATE_ERROR, POSITION_ERROR, VELOCITY_ERROR, LOG_INERTIA_ERROR]
-_TOLD = ("restarts", "dropped", "fit")
-"""What filters tell of whole runs, for the tables."""
+_COUNTED = ("restarts", "dropped", "fit")
+"""What filters count over whole runs, for the tables."""
 _PLACES = {
     "rate_b": (RATE, RATE_ERROR),
     "relative_position_h": (POSITION, POSITION_ERROR),
@@ -101,11 +101,11 @@ class CameraRangeMinimal(ProblemPart):
         return np.concatenate([pixels, ranges[..., None]], axis=-1).reshape(*epochs, -1)
 
     def model(self, data: Data, clock: Clock) -> LandmarkModel:
-        """Return motion and sights of one clock step."""
+        """Return motion and measurements of one clock step."""
         start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
         white = float(data["attitude_noise"][0]) if self.camera_attitude == "known" else 0.0
         return landmark_model(
-            Setup(
+            CameraRangeGeometry(
                 camera=quaternion.to_matrix(data["known_q_hc"]),
                 points=data["image_point"].shape[2],
                 mean_motion=mean_motion_of(*start),
@@ -163,9 +163,9 @@ class CameraRangeMinimal(ProblemPart):
 
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors against the truth, as they are and gauge-free, and consistency."""
-        told = {name: data[name] for name in _TOLD if name in data}
+        counted = {name: data[name] for name in _COUNTED if name in data}
         q_hc = self._start_camera(data) if "true_q_hc" in data else np.empty(0)
-        return told | scores(data, q_hc, _SCORED, self.log_inertia_sigma)
+        return counted | scores(data, q_hc, _SCORED, self.log_inertia_sigma)
 
     def truth(self, data: Data) -> Array | None:
         """Return the true states (run, time, n), where they are known."""

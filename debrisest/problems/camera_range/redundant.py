@@ -18,8 +18,8 @@ from debrisest.problems.camera_range.redundant_model import (
     POSITION,
     RATE,
     VELOCITY,
+    CameraGeometry,
     Q,
-    Setup,
     redundant_model,
 )
 from debrisest.problems.camera_range.score import scores
@@ -50,7 +50,9 @@ class CameraRangeRedundant(ProblemPart):
         """Return process and measurement of one clock step."""
         start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
         points = data["image_point"].shape[2]
-        known = Setup(points, mean_motion_of(*start), clock.step, float(data["focal_px"][0]))
+        known = CameraGeometry(
+            points, mean_motion_of(*start), clock.step, float(data["focal_px"][0])
+        )
         return redundant_model(
             known, float(data["image_noise_px"][0]), float(data["range_noise"][0])
         )

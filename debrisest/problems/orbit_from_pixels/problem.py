@@ -11,7 +11,7 @@ from debrisest.clock import Clock
 from debrisest.filters.association.single import labelled
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.scan_model import ScanModel
-from debrisest.problems.orbit_from_pixels.model import ORBIT, Setup, scan_model
+from debrisest.problems.orbit_from_pixels.model import ORBIT, ObserverGeometry, scan_model
 from debrisest.problems.orbit_from_pixels.score import scores, true_bias
 from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 
@@ -52,7 +52,7 @@ class OrbitFromPixels(ProblemPart):
         """Return process and measurement of one clock step."""
         to_camera = quaternion.to_matrix(quaternion.conjugate(data["known_q_ic"]))
         return scan_model(
-            Setup(
+            ObserverGeometry(
                 step=clock.step,
                 observer=_time_first(data["observer_position"]),
                 to_camera=_time_first(to_camera),

@@ -14,10 +14,10 @@ from debrisest.problems.stereo_pose.chart import ATTITUDE_ERROR
 from debrisest.problems.stereo_pose.data import (
     NAMES,
     Measure,
+    geometry_of,
     measured_of,
     noise_of,
     parts_of,
-    setup_of,
     shown_of,
     state_of,
 )
@@ -71,7 +71,7 @@ class StereoPoseAdditive(_StereoPose):
 
     def model(self, data: Data, clock: Clock) -> Model:
         """Return process and measurement of one clock step."""
-        known = setup_of(data, clock, self.measures, self.raw_rotation)
+        known = geometry_of(data, clock, self.measures, self.raw_rotation)
         variance = np.zeros(15 + 3 * known.points)
         variance[VELOCITY] = self.process_noise.velocity_m_s**2
         variance[RATE] = self.process_noise.rate_rad_s**2
@@ -97,7 +97,7 @@ class StereoPose(_StereoPose):
 
     def model(self, data: Data, clock: Clock) -> ReplayModel:
         """Return trajectories, measurements and charts."""
-        known = setup_of(data, clock, self.measures)
+        known = geometry_of(data, clock, self.measures)
         variance = {name: float(data[f"start_{name}_sigma"].flat[0]) ** 2 for name in NAMES}
         prior = _plain(_variances(variance, state_of(data, "start_")))
         return replay_model(known, noise_of(data, known), np.sqrt(prior))

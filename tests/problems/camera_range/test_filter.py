@@ -9,7 +9,7 @@ from debrisest.filters.bound.landmarks import landmark_bound
 from debrisest.filters.landmark_model import points_of
 from debrisest.filters.landmarks.cost import Prior, Unknowns, cost
 from debrisest.filters.landmarks.landmark_filter import Annealing, landmark_filter
-from debrisest.filters.landmarks.update import Belief, Rule
+from debrisest.filters.landmarks.update import Belief, UpdateSettings
 from debrisest.filters.status import ReplayStatus
 from debrisest.problems.camera_range.projection import landmark_model
 
@@ -63,13 +63,13 @@ def test_frames_of_the_batch_are_not_used_again(nominal) -> None:
 
 def test_masked_is_absent_to_the_last_bit(nominal) -> None:
     case, started = nominal
-    hidden = case.sights.seen.copy()
+    hidden = case.observed.seen.copy()
     hidden[:, 101:, 5] = False
-    noisy = case.sights.shown.copy()
+    noisy = case.observed.shown.copy()
     noisy[:, 101:, 5] = 1e3
     results = [
-        case.with_sights(case.sights._replace(seen=hidden, shown=shown)).filtered(started)
-        for shown in (case.sights.shown, noisy)
+        case.with_observed(case.observed._replace(seen=hidden, shown=shown)).filtered(started)
+        for shown in (case.observed.shown, noisy)
     ]
     np.testing.assert_array_equal(results[0].state, results[1].state)
     np.testing.assert_array_equal(results[0].covariance, results[1].covariance)
@@ -83,15 +83,17 @@ def test_an_absent_landmark_leaves_the_others_as_they_are(nominal) -> None:
     present[:, 5] = False
     covariance = started.covariance.copy()
     covariance[:, 32:35] = covariance[:, :, 32:35] = 0.0
-    sights = case.sights._replace(seen=case.sights.seen.copy())
-    sights.seen[:, :, 5] = False
+    observed = case.observed._replace(seen=case.observed.seen.copy())
+    observed.seen[:, :, 5] = False
     without = started._replace(present=present, covariance=covariance)
-    found = case.with_sights(sights).filtered(without)
+    found = case.with_observed(observed).filtered(without)
     rest = np.delete(np.arange(11), 5)
     model = landmark_model(case.known._replace(points=10))
     small = case._replace(
         model=model,
-        sights=sights._replace(shown=sights.shown[:, :, rest], seen=sights.seen[:, :, rest]),
+        observed=observed._replace(
+            shown=observed.shown[:, :, rest], seen=observed.seen[:, :, rest]
+        ),
     )
     begun = without._replace(
         points=started.points[:, rest],
@@ -117,9 +119,9 @@ def test_without_a_gate_false_matches_spoil_the_estimate(experiment) -> None:
 
 def test_a_landmark_that_jumps_is_dropped_and_inserted_anew(nominal) -> None:
     case, started = nominal
-    shown = case.sights.shown.copy()
+    shown = case.observed.shown.copy()
     shown[:, 110:, 2] += 300.0
-    found = case.with_sights(case.sights._replace(shown=shown)).filtered(started)
+    found = case.with_observed(case.observed._replace(shown=shown)).filtered(started)
     points = points_of(case.model, found.state)
     assert np.isfinite(points[:, 114, 2]).all()
     assert np.isnan(points[:, 117, 2]).all()
@@ -163,20 +165,20 @@ def test_white_noise_of_the_attitude_is_shared_by_the_points(experiment) -> None
     at = Unknowns(model.parameters(case.core[:, 0]), case.points, np.ones((2, 11), dtype=bool))
     prior = Prior(at.vector, np.tile(np.eye(47), (2, 1, 1)))
     frames = np.arange(0, 40, 3)
-    found = cost(model, case.sights, prior, at, frames, False)
+    found = cost(model, case.observed, prior, at, frames, False)
     reference = dense_information(model, case, frames, noise=True)
     np.testing.assert_allclose(found.information, reference, rtol=1e-6, atol=1e-3)
 
 
 def dense_information(model, case, frames, noise):
     """Information of all unknowns by the textbook: rows times inverse covariance times rows."""
-    core, freedom = model.start(model.parameters(case.core[:, 0]))
+    core, by_parameters = model.start(model.parameters(case.core[:, 0]))
     cores, transitions = model.trajectory(core, int(frames[-1]))
     total = np.tile(np.eye(47), (len(core), 1, 1))
     for k in frames:
         rows = model.rows(cores[:, k : k + 1], case.points[:, None], np.array([k]))
         for run in range(len(core)):
-            by_start = transitions[run, k] @ freedom[run]
+            by_start = transitions[run, k] @ by_parameters[run]
             h = np.zeros((23, 47))
             h[:22, :14] = rows.by_core[run, 0].reshape(22, -1) @ by_start
             for i in range(11):
@@ -196,7 +198,7 @@ def test_the_bound_is_the_inverse_information(experiment, noise: float) -> None:
     model = landmark_model(case.known._replace(attitude_sigma=np.radians(noise)))
     wide = np.tile(np.eye(47), (2, 1, 1))
     bound = landmark_bound(
-        model, case.core[:, 0], case.points, case.parameters, wide, case.sights, [0, 39]
+        model, case.core[:, 0], case.points, case.parameters, wide, case.observed, [0, 39]
     )
     information = dense_information(model, case, np.arange(40), noise > 0)
     start = np.linalg.inv(information)
@@ -212,7 +214,7 @@ def test_the_bound_is_the_inverse_information(experiment, noise: float) -> None:
 def test_the_filter_is_near_the_bound(filtered) -> None:
     case, _, found = filtered
     bound = landmark_bound(
-        *(case.model, case.core[:, 0], case.points, case.parameters, case.covariance, case.sights)
+        *(case.model, case.core[:, 0], case.points, case.parameters, case.covariance, case.observed)
     )
     sigma = found.sigma[:, -1, MOVING]
     assert (sigma > 0.999 * bound.sigma[:, -1, MOVING]).all()
@@ -223,18 +225,18 @@ def test_the_filter_is_near_the_bound(filtered) -> None:
 
 def test_without_a_batch_the_shape_comes_out_but_for_its_gauge(experiment) -> None:
     case = experiment(4, 150, 15, guess=0.7)
-    core, freedom = case.model.start(case.parameters)
+    core, by_parameters = case.model.start(case.parameters)
     covariance = np.zeros((4, 50, 50))
     inner = case.covariance[:, :14, :14]
-    covariance[:, :17, :17] = freedom @ inner @ np.swapaxes(freedom, -1, -2)
+    covariance[:, :17, :17] = by_parameters @ inner @ np.swapaxes(by_parameters, -1, -2)
     covariance[:, :3, :3] += np.radians(5.0) ** 2 * np.eye(3)
     found = landmark_filter(
         case.model,
         Belief(core, np.zeros((4, 11, 3)), covariance),
         np.zeros((4, 11), dtype=bool),
         np.full(4, -1),
-        case.sights,
-        Rule(),
+        case.observed,
+        UpdateSettings(),
         Annealing(100.0, 20.0),
     )
     points = points_of(case.model, found.state[:, -1])

@@ -12,10 +12,10 @@ def test_a_false_first_match_does_not_become_a_landmark(nominal) -> None:
     present, covariance = started.present.copy(), started.covariance.copy()
     present[:, 2] = False
     covariance[:, 23:26] = covariance[:, :, 23:26] = 0.0
-    shown, seen = case.sights.shown.copy(), case.sights.seen.copy()
+    shown, seen = case.observed.shown.copy(), case.observed.seen.copy()
     seen[:, :110, 2] = False
     shown[:, 110:113, 2] = shown[:, 110:113, 5]
-    case = case.with_sights(case.sights._replace(shown=shown, seen=seen))
+    case = case.with_observed(case.observed._replace(shown=shown, seen=seen))
     found = case.filtered(started._replace(present=present, covariance=covariance))
     error = np.abs(points_of(case.model, found.state) - case.points[:, None])[:, :, 2]
     assert (found.counts["dropped"] >= 1).all()
@@ -25,9 +25,11 @@ def test_a_false_first_match_does_not_become_a_landmark(nominal) -> None:
 
 def test_divergence_in_the_last_frame_is_told(nominal) -> None:
     case, started = nominal
-    shown = case.sights.shown.copy()
+    shown = case.observed.shown.copy()
     shown[1, -1, 0] = np.nan
-    result = case.with_sights(case.sights._replace(shown=shown)).filtered(started, false_alarm=None)
+    result = case.with_observed(case.observed._replace(shown=shown)).filtered(
+        started, false_alarm=None
+    )
     status, at = result.status, result.diverged_at
     ends = [ReplayStatus.DIVERGED if run == 1 else ReplayStatus.CONVERGED for run in range(4)]
     assert status.tolist() == [end.sentence for end in ends]
