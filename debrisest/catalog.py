@@ -9,11 +9,11 @@ from debrisest.parts.filters.association import (
     AssociationFilter,
     JointAssociation,
     KnownAssociation,
-    LinearisedAtTruth,
 )
+from debrisest.parts.filters.bound import Efficient, LandmarkBound, LinearisedAtTruth
 from debrisest.parts.filters.kalman import Extended, Unscented
-from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkBound, LandmarkFilter
-from debrisest.parts.filters.replay import Efficient, Replay
+from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
+from debrisest.parts.filters.replay import Replay
 from debrisest.parts.recoveries.basis_pursuit import BasisPursuit
 from debrisest.parts.sensors.camera_range import CameraRange
 from debrisest.parts.sensors.detections import Detections

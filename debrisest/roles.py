@@ -4,12 +4,12 @@ from abc import ABC, abstractmethod
 from typing import Annotated, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from debrisest.arrays import Array, Data, IntArray
+from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
+from debrisest.filters.estimates import Estimates
 
 Window = tuple[float, float]
 """From the first time (included) to the second (excluded), in seconds."""
@@ -128,26 +128,12 @@ class Given(NamedTuple):
     truth: Array | None = None
     """True states (run, time, n), for a bound or a diagnostic; no estimate depends on them."""
 
-
-class Filtered(NamedTuple):
-    """What every filter hands back, NaN from the epoch of divergence on."""
-
-    state: Array
-    """(run, time, n)."""
-    sigma: Array
-    """1-sigma of each error, (run, time, n_e)."""
-    covariance: Array
-    """(run, kept, n_e, n_e)."""
-    kept: IntArray
-    """Epochs of `covariance`, ascending, the last one always among them."""
-    nis: Array
-    """Normalised innovation squared, (run, time)."""
-    nis_dof: IntArray
-    """Measured components that were used, (run, time)."""
-    status: NDArray[np.str_]
-    """How each run ended, in words, (run,)."""
-    counts: Data = {}
-    """What else the filter counts, by its name in the vocabulary."""
+    @property
+    def known_truth(self) -> Array:
+        """Return the true states; raise ValueError where they are not known."""
+        if self.truth is None:
+            raise ValueError("the bound is linearised at the truth, which is not known here")
+        return self.truth
 
 
 class ProblemPart(Part):
@@ -171,7 +157,7 @@ class ProblemPart(Part):
         """Return the initial state (run, n) and covariance (run, n, n)."""
 
     @abstractmethod
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its ``_sigma``."""
 
     @abstractmethod
@@ -194,5 +180,5 @@ class FilterPart(Part):
         return getattr(self, "keep_s", None)
 
     @abstractmethod
-    def run(self, model: Any, given: Given) -> Filtered:
+    def run(self, model: Any, given: Given) -> Estimates:
         """Return the estimates of all epochs."""

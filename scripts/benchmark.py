@@ -33,15 +33,15 @@ from debrisest.arrays import Array, BoolArray
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.dynamics.torque_free import torque_free
-from debrisest.filters.extended import extended
+from debrisest.filters.kalman.extended import extended
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
 from debrisest.filters.replay.replay import replay
-from debrisest.filters.unscented import UnscentedParameters, unscented
-from debrisest.problems.camera_range.redundant_model import Setup as Redundant
+from debrisest.problems.camera_range.redundant_model import CameraGeometry as Redundant
 from debrisest.problems.camera_range.redundant_model import process as shape_process
 from debrisest.problems.camera_range.redundant_model import redundant_model
 from debrisest.problems.stereo_pose.additive import additive_model
-from debrisest.problems.stereo_pose.model import Setup, measurement, setup
+from debrisest.problems.stereo_pose.model import StereoGeometry, measurement, stereo_geometry
 from debrisest.problems.stereo_pose.replay import replay_model
 from debrisest.problems.stereo_pose.truth import draw_guess, simulate_truth
 from debrisest.problems.tumbling.attitude import TumblingAttitude, Variances
@@ -138,14 +138,14 @@ def benchmark_unscented(runs: int, epochs: int, rounds: int) -> Row:
 ORBIT = (7.17e6, 0.05, 0.0)
 
 
-def stereo_pose(runs: int, epochs: int) -> tuple[Array, Array, Setup]:
+def stereo_pose(runs: int, epochs: int) -> tuple[Array, Array, StereoGeometry]:
     """Return guesses (run, n), measurements (run, time, m) and setup of a slowly turning target."""
     rng = np.random.default_rng(3)
     start = np.zeros((runs, 30))
     start[:, :9] = [10, 60, 10, 0.01, -0.0225, -0.01, *np.radians([-0.1, -0.1, 0.034])]
     start[:, 9:15] = [0, 0, 0, 1, -0.186, -0.0797]
     start[:, 15:] = rng.uniform(-1.5, 1.5, (runs, 15))
-    known = setup(epochs, 1.0, *ORBIT)
+    known = stereo_geometry(epochs, 1.0, *ORBIT)
     truth = simulate_truth(np.arange(float(epochs)), start, *ORBIT)
     shown = np.stack([measurement(known, truth[:, k], k) for k in range(epochs)], axis=1)
     guess = draw_guess(start, VARIANCE, rng.standard_normal(start.shape))

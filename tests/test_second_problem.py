@@ -17,11 +17,10 @@ from scipy.stats import chi2
 
 from debrisest.catalog import CATALOG
 from debrisest.draws import Stream
-from debrisest.filters.history import HistoryWriter
+from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.model import Model
 from debrisest.results import store
 from debrisest.roles import (
-    Filtered,
     FilterPart,
     Given,
     Positive,
@@ -140,11 +139,10 @@ class Kalman(FilterPart):
     needs = ("model",)
     kind: Literal["kalman"]
 
-    def run(self, model: Model, given: Given) -> Filtered:
+    def run(self, model: Model, given: Given) -> Estimates:
         state, covariance, measured = given.state, given.covariance, given.measured
         f, h = model.process(np.eye(2), 0).T, model.measurement(np.eye(2), 0).T
-        writer = HistoryWriter(model, state, covariance, measured.shape[1])
-        none = np.zeros(len(state), dtype=np.int64)
+        writer = EstimatesWriter(model.error_names, state, covariance, measured.shape[1])
         for k in range(measured.shape[1]):
             if k:
                 state = state @ f.T
@@ -158,12 +156,8 @@ class Kalman(FilterPart):
                 gain @ model.measurement_noise @ np.swapaxes(gain, -1, -2)
             )
             nis = innovation[:, 0] ** 2 / size[:, 0, 0]
-            writer.record(k, state, covariance, nis, none + 1, none)
-        found = writer.history()
-        return Filtered(
-            *(found.state, found.sigma, found.covariance, found.kept, found.nis, found.nis_dof),
-            status=np.array(["finished"] * len(state)),
-        )
+            writer.record(k, state, covariance, {"nis": nis, "nis_dof": np.ones_like(nis)})
+        return writer.estimates()
 
 
 ADDED = {

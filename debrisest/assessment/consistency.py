@@ -40,12 +40,12 @@ def chart_free(cost_of_truth: Array, cost_of_estimate: Array, n: int) -> Array:
     return np.asarray((cost_of_truth - cost_of_estimate) / n)
 
 
-def interval(freedom: Array, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
-    """Two-sided chi-square interval per degree of freedom of ``freedom`` degrees in all."""
+def interval(dof: Array, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
+    """Two-sided chi-square interval per degree of freedom of ``dof`` degrees in all."""
     from scipy.stats import chi2
 
     tail = 0.5 * (1.0 - confidence)
-    count = np.asarray(freedom, dtype=np.float64)
+    count = np.asarray(dof, dtype=np.float64)
     return np.asarray(chi2.ppf(tail, count) / count), np.asarray(chi2.isf(tail, count) / count)
 
 
@@ -67,30 +67,30 @@ def consistent_interval(
     return np.nan, np.nan
 
 
-def freedom_of_runs(statistic: str, freedom: Array, white: bool) -> Array:
-    """Degrees of freedom (run,) of a run's figure over the epochs of ``freedom (run, epoch)``.
+def dof_of_runs(statistic: str, dof: Array, white: bool) -> Array:
+    """Degrees of freedom (run,) of a run's figure over the epochs of ``dof (run, epoch)``.
 
     ``white`` squares are independent between epochs, as innovations are. Others, as errors are, may
     all say the same: their mean is taken to spread like a single one, so that the interval is never
     too narrow. Epochs without freedom do not count. The mean square of several epochs follows no
     chi-square distribution: 0, as where there is no freedom at all.
     """
-    known = freedom > 0
+    known = dof > 0
     count = known.sum(-1)
-    inverse = np.divide(1.0, freedom, out=np.zeros(freedom.shape), where=known).sum(-1)
+    inverse = np.divide(1.0, dof, out=np.zeros(dof.shape), where=known).sum(-1)
     together = np.divide(count**2, inverse, out=np.zeros(len(count)), where=count > 0)
     if statistic in _MEAN_SQUARES:
         together = np.where(count == 1, together, 0.0)
     return np.asarray(together if white else together / np.maximum(count, 1))
 
 
-def pooled(freedom: Array) -> Array:
-    """Degrees of freedom of the mean of independent squares, each over its own ``freedom (n,)``.
+def pooled(dof: Array) -> Array:
+    """Degrees of freedom of the mean of independent squares, each over its own ``dof (n,)``.
 
     Their sum where all have the same number, else those of the chi-square distribution that has the
     mean's variance (Satterthwaite).
     """
-    return np.asarray(len(freedom) ** 2 / np.sum(1.0 / freedom))
+    return np.asarray(len(dof) ** 2 / np.sum(1.0 / dof))
 
 
 def _interval_of_medians(groups: list[Array], confidence: float) -> tuple[float, float]:
@@ -106,7 +106,7 @@ def _interval_of_medians(groups: list[Array], confidence: float) -> tuple[float,
     return float(centre - below / count), float(centre + above / count)
 
 
-def _median_quantiles(freedom: Array, at: Array) -> Array:
+def _median_quantiles(dof: Array, at: Array) -> Array:
     """Quantiles ``at`` these probabilities of the median of squares per degree of freedom.
 
     Of n uniform draws, n odd, the middle one follows Beta((n + 1) / 2, (n + 1) / 2); the mean of
@@ -116,7 +116,7 @@ def _median_quantiles(freedom: Array, at: Array) -> Array:
     """
     from scipy.stats import beta, chi2
 
-    runs, together = len(freedom), pooled(freedom)
+    runs, together = len(dof), pooled(dof)
     if runs <= 2:
         return np.asarray(chi2.ppf(at, together) / together)
     each = together / runs

@@ -21,5 +21,5 @@ def nees(data: Data, error: Array, covariance: Array) -> Data:
     runs, _, n = error.shape
     square = np.full((runs, len(data["time_s"])), np.nan)
     square[:, covariance_epochs(data)] = normalized_square(error, covariance)
-    freedom = np.where(np.isfinite(square), float(n), 0.0)
-    return {"nees": per_dimension(square, freedom), "nees_dof": freedom}
+    dof = np.where(np.isfinite(square), float(n), 0.0)
+    return {"nees": per_dimension(square, dof), "nees_dof": dof}

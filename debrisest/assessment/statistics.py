@@ -66,9 +66,9 @@ STATISTICS: dict[str, Statistic] = {
 }
 
 
-def per_dimension(square: Array, freedom: Array) -> Array:
+def per_dimension(square: Array, dof: Array) -> Array:
     """Return a normalised square over its degrees of freedom, NaN where there is none."""
-    counted = np.where(freedom > 0, freedom, np.nan)
+    counted = np.where(dof > 0, dof, np.nan)
     return np.asarray(square / counted)
 
 

@@ -1,12 +1,13 @@
 """Which measurements are too unlikely to be used, and when to doubt the filter instead of them."""
 
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
 from scipy.special import gammainccinv
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.covariance import solve
+from debrisest.filters.linear_algebra import solve
 from debrisest.filters.missing import drop_missing
 
 
@@ -53,9 +54,7 @@ class Gatekeeper:
         labels = np.arange(components) if groups is None else np.array(groups, dtype=np.int64)
         _, self._group = np.unique(labels, return_inverse=True)
         self._members, self._real = _members(self._group)
-        freedom = np.arange(1, self._members.shape[1] + 1)
-        limits = 2.0 * gammainccinv(0.5 * freedom, gate.false_alarm)
-        self._limits = np.concatenate([[np.inf], limits])
+        self._limits = chi_square_limits(gate.false_alarm, self._members.shape[1])
         self._gate = gate
         self._streak = np.zeros(len(start), dtype=np.int64)
         self._start = np.diagonal(start, 0, -2, -1)
@@ -82,6 +81,12 @@ class Gatekeeper:
             passed[reopened] = wider | shut[:, None]
         return Verdict(measured & passed[:, self._group], reopened, factor)
 
+    def of(self, runs: IntArray) -> "Gatekeeper":
+        """Return the keeper of some runs, with what it remembers of them."""
+        part = copy(self)
+        part._streak, part._start = self._streak[runs], self._start[runs]
+        return part
+
     def doubted(self, covariance: Array, factor: Array) -> Array:
         """Predicted covariance (run, n_e, n_e) times `factor`, in no direction above the start."""
         headroom = self._start / np.diagonal(covariance, 0, -2, -1)
@@ -92,10 +97,7 @@ class Gatekeeper:
         """Normalised innovation squared of every group, (run, group)."""
         nu = innovation[:, self._members]
         block = total[:, self._members[:, :, None], self._members[:, None, :]]
-        nu, _, block = drop_missing(present, nu, nu[..., None, :], block)
-        size = nu.shape[-1]
-        solved = solve(block.reshape(-1, size, size), nu.reshape(-1, size, 1))
-        return np.asarray((nu * solved.reshape(nu.shape)).sum(-1))
+        return group_squares(present, nu, block)
 
     def _needed(self, present: BoolArray, innovation: Array, total: Array, noise: Array) -> Array:
         """Factor of P with which a group's squares, each by its own scale, are as expected."""
@@ -115,6 +117,18 @@ class Gatekeeper:
         self._streak = np.where(judged == 0, self._streak, (self._streak + 1) * suspect)
         self._streak[reopened] = 0
         return reopened
+
+
+def chi_square_limits(false_alarm: float, size: int) -> Array:
+    """Limits (size + 1,) of the squares of groups of 0 to `size` components; infinite for 0."""
+    dof = np.arange(1, size + 1)
+    return np.concatenate([[np.inf], 2.0 * gammainccinv(0.5 * dof, false_alarm)])
+
+
+def group_squares(present: BoolArray, innovation: Array, total: Array) -> Array:
+    """Normalised innovation squared (...) of groups (..., size), total (..., size, size)."""
+    nu, _, block = drop_missing(present, innovation, innovation[..., None, :], total)
+    return np.asarray((nu * solve(block, nu[..., None])[..., 0]).sum(-1))
 
 
 def _median(needed: Array, rejected: BoolArray) -> Array:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 
 
 def add(state: Array, error: Array) -> Array:
@@ -36,6 +36,7 @@ class Model(NamedTuple):
       one may be left out. A filter that needs one that is missing differentiates numerically.
     * `gate_groups` gives every measurement component the number of the group with which a gate
       accepts or rejects it; without it, every component is judged alone.
+    * `select(runs)` gives the model of some runs; without it, the model is the same for all.
     """
 
     process: Callable[[Array, int], Array]
@@ -51,3 +52,8 @@ class Model(NamedTuple):
     process_jacobian: Callable[[Array, int], Array] | None = None
     measurement_jacobian: Callable[[Array, int], Array] | None = None
     gate_groups: tuple[int, ...] | None = None
+    select: Callable[[IntArray], "Model"] | None = None
+
+    def of(self, runs: IntArray) -> "Model":
+        """Return the model of some runs."""
+        return self if self.select is None else self.select(runs)

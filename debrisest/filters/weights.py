@@ -9,11 +9,24 @@ GATE = 5.0
 """Innovations beyond this many sigma are rejected."""
 LIMIT = 4.5
 """Residuals of the estimate itself beyond this are."""
+FALSE_MATCH = 7.0
+"""What is so far from the truth is an outlier, which an efficient estimator recognises: Gaussian
+noise would be once in 10^11 times."""
 
 
 def cauchy(residual: Array) -> Array:
     """Weights of Cauchy's loss, which lets go of outliers gradually."""
-    return np.asarray((1.0 + (residual / CAUCHY_SCALE) ** 2) ** -0.5)
+    return cauchy_weight((residual / CAUCHY_SCALE) ** 2)
+
+
+def cauchy_weight(square: Array) -> Array:
+    """The same by squares over `CAUCHY_SCALE`^2, for instance of a group that is judged as one."""
+    return np.asarray((1.0 + square) ** -0.5)
+
+
+def cauchy_loss(square: Array) -> Array:
+    """Cauchy's loss of such squares."""
+    return np.asarray(CAUCHY_SCALE**2 * np.log1p(square))
 
 
 def hard(residual: Array) -> Array:
@@ -29,9 +42,3 @@ def innovation_gate(innovation: Array, derivative: Array, covariance: Array) -> 
     """
     spread = 1.0 + ((derivative @ covariance) * derivative).sum(-1)
     return np.asarray(innovation**2 <= GATE**2 * spread, dtype=np.float64)
-
-
-def cauchy_loss(residual: Array) -> Array:
-    """Sum per run of Cauchy's loss of residuals ``(run, epoch, m)``."""
-    scaled = np.log1p((residual / CAUCHY_SCALE) ** 2)
-    return np.asarray(CAUCHY_SCALE**2 * scaled.sum((-2, -1)))

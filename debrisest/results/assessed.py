@@ -6,7 +6,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data
-from debrisest.assessment.consistency import freedom_of_runs
+from debrisest.assessment.consistency import dof_of_runs
 from debrisest.assessment.statistics import per_run, window_mask
 from debrisest.results.results import Results
 from debrisest.scenario.schema import Divergence, window_of
@@ -52,7 +52,7 @@ class Result(NamedTuple):
         law = VOCABULARY[dataset].chi_square
         if degrees is None or law is None:
             return np.zeros(self.runs)
-        return freedom_of_runs(statistic, degrees, law.white)
+        return dof_of_runs(statistic, degrees, law.white)
 
     def seen(self, dataset: str, window: str) -> bool:
         """Return whether any run can have a figure: with degrees of freedom, if it needs some."""

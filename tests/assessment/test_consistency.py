@@ -7,7 +7,7 @@ from scipy.stats import chi2
 from debrisest.assessment.consistency import (
     chart_free,
     consistent_interval,
-    freedom_of_runs,
+    dof_of_runs,
     interval,
     normalized_square,
     pooled,
@@ -120,9 +120,9 @@ def test_without_freedom_there_is_no_interval(groups):
 
 def test_freedom_adds_up_over_independent_epochs_only():
     freedom = np.array([[4.0, 0.0, 4.0, 4.0], [0.0, 0.0, 7.0, 0.0], [0.0, 0.0, 0.0, 0.0]])
-    assert freedom_of_runs("mean", freedom, white=True) == pytest.approx([12, 7, 0])
-    assert freedom_of_runs("mean", freedom, white=False) == pytest.approx([4, 7, 0])
-    assert freedom_of_runs("median", freedom, white=True) == pytest.approx([0, 7, 0])
+    assert dof_of_runs("mean", freedom, white=True) == pytest.approx([12, 7, 0])
+    assert dof_of_runs("mean", freedom, white=False) == pytest.approx([4, 7, 0])
+    assert dof_of_runs("median", freedom, white=True) == pytest.approx([0, 7, 0])
     assert pooled(np.array([3.0, 3.0])) == pytest.approx(6)
 
 
@@ -130,7 +130,7 @@ def test_a_span_of_one_repeated_error_is_not_taken_for_many():
     """Errors that stay what they are: the mean over 50 epochs is that of one."""
     squares = np.random.default_rng(7).chisquare(6, (4000, 10)).mean(-1) / 6
     for white, expected in ((False, 0.95), (True, 0.3)):
-        runs = freedom_of_runs("mean", np.full((10, 50), 6.0), white)
+        runs = dof_of_runs("mean", np.full((10, 50), 6.0), white)
         low, high = consistent_interval("mean", [runs])
         share = np.mean((squares > low) & (squares < high))
         assert share == pytest.approx(expected, abs=0.02) if not white else share < expected

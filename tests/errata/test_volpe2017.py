@@ -1,4 +1,4 @@
-"""What is wrong in Volpe, Palmerini, Sabatini (2017), each with its evidence."""
+"""What is wrong in Volpe, Palmerini, Sabatini (2017), each with its arc."""
 
 import numpy as np
 import pytest

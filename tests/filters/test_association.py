@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import associated, jointly_associated, labelled
 from debrisest.filters.association.weights import Validation
-from debrisest.filters.extended import extended
-from debrisest.filters.history import FilterStatus
+from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
+from debrisest.filters.scan_model import ScanModel
+from debrisest.filters.status import FilterStatus
 
 RUNS, EPOCHS, SENSORS = 6, 25, 3
 F = np.eye(4) + np.eye(4, k=2)
@@ -118,7 +118,9 @@ def test_clutter_outside_the_gate_changes_nothing_but_its_count() -> None:
     before = associated(MODEL, guess, covariance, scans, RULE)
     after = associated(MODEL, guess, covariance, np.concatenate([scans, far], -2), RULE)
     same(after, before, rtol=1e-12)
-    assert np.array_equal(after.rejected - before.rejected, np.full((RUNS, EPOCHS), 2 * SENSORS))
+    assert np.array_equal(
+        after.counts["rejected"] - before.counts["rejected"], np.full((RUNS, EPOCHS), 2 * SENSORS)
+    )
 
 
 def test_scans_without_detections_are_mere_prediction() -> None:
@@ -179,20 +181,26 @@ def test_a_run_does_not_depend_on_its_companions(joint):
     scans[1, 4] = 1e200
     spoiled = run(MODEL, guess, covariance, scans, RULE)
     alone = run(MODEL, guess[2:4], covariance[2:4], scans[2:4], RULE)
-    assert spoiled.status[0] == FilterStatus.NO_START
-    for name in ("state", "sigma", "covariance", "nis", "nis_dof", "rejected"):
+    assert spoiled.status[0] == FilterStatus.NO_START.sentence
+    for name in ("state", "sigma", "covariance", "nis", "nis_dof"):
         assert np.array_equal(getattr(spoiled, name)[2:], getattr(together, name)[2:]), name
         assert np.array_equal(getattr(alone, name), getattr(together, name)[2:4]), name
+    for name, values in together.counts.items():
+        assert np.array_equal(spoiled.counts[name][2:], values[2:]), name
+        assert np.array_equal(alone.counts[name], values[2:4]), name
 
 
 def test_a_run_that_diverges_ends_there() -> None:
     _, scans, guess, covariance = campaign(7)
-    broken = MODEL._replace(
-        process=lambda x, k: np.where(
-            (k == 5) & (np.arange(RUNS) == 2)[:, None, None], np.inf, process(x, k)
+
+    def broken(runs):
+        wrong = (runs == 2)[:, None, None]
+        return MODEL._replace(
+            process=lambda x, k: np.where((k == 5) & wrong, np.inf, process(x, k)),
+            select=lambda chosen: broken(runs[chosen]),
         )
-    )
-    history = associated(broken, guess, covariance, scans, RULE)
+
+    history = associated(broken(np.arange(RUNS)), guess, covariance, scans, RULE)
     assert history.diverged_at.tolist() == [-1, -1, 6, -1, -1, -1]
     assert np.isnan(history.state[2, 6:]).all()
     assert np.isfinite(history.state[:, :6]).all()

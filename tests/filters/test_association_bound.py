@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import associated
 from debrisest.filters.association.weights import Validation
+from debrisest.filters.scan_model import ScanModel
 
 RUNS, EPOCHS, SENSORS = 150, 12, 2
 R = np.array([[0.02, 0.01], [0.01, 0.03]])

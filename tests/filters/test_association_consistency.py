@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import associated, jointly_associated
 from debrisest.filters.association.weights import Validation
+from debrisest.filters.scan_model import ScanModel
 
 RUNS, EPOCHS = 200, 40
 F = np.eye(4) + np.eye(4, k=2)

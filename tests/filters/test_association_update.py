@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import associated
 from debrisest.filters.association.weights import Validation
+from debrisest.filters.scan_model import ScanModel
 
 GATE, DETECTED = 6.0, 0.75
 R = np.array([[0.6, 0.2], [0.2, 0.9]])

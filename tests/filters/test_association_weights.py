@@ -9,6 +9,7 @@ from scipy.stats import chi2, multivariate_normal
 from debrisest.filters.association.weights import (
     Validation,
     absence_weight,
+    inverse_unit_ball,
     nearest,
     probabilistic,
 )
@@ -44,7 +45,9 @@ def test_the_printed_weight_is_too_large_by_the_square_of_the_unit_circle() -> N
     b = absence_weight(3, rule, 2)
     assert b == pytest.approx(missed(3, np.eye(2), 5.0, 0.7, 0.9, 2), rel=1e-12)
     assert b == pytest.approx(0.634, abs=5e-4)
-    assert absence_weight(3, rule._replace(misses="printed"), 2) == pytest.approx(np.pi**2 * b)
+    assert absence_weight(3, rule._replace(ball=inverse_unit_ball), 2) == pytest.approx(
+        np.pi**2 * b
+    )
 
 
 def test_the_probability_of_the_gate_is_that_of_chi_square() -> None:
@@ -95,9 +98,8 @@ def test_the_nearest_takes_all() -> None:
         Validation(detection_probability=0.0),
         Validation(detection_probability=1.1),
         Validation(gate_probability=2.0),
-        Validation(misses="guessed"),
     ],
 )
 def test_settings_without_sense_are_refused(rule):
-    with pytest.raises(ValueError, match=r"probability|misses"):
+    with pytest.raises(ValueError, match="probability"):
         rule.checked()

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import gammaincinv
 
-from debrisest.filters.extended import extended
 from debrisest.filters.gate import Gate
+from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
 
 RUNS, EPOCHS = 300, 40

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from debrisest.attitude import quaternion
-from debrisest.filters.extended import extended
+from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
 
 Q = np.diag([1e-3, 1e-4])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from debrisest.filters.extended import extended
 from debrisest.filters.gate import Gate, Gatekeeper
+from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
 
 GROUPS = (7, 3, 7, 3, 3, 0, 3)
@@ -67,7 +67,7 @@ def test_good_data_are_rejected_at_the_theoretical_rate(rate, seed):
     )
     start, covariance = np.zeros((runs, 3)), np.stack([np.eye(3)] * runs)
     history = extended(model, start, covariance, y[:, None], gate=Gate(false_alarm=rate))
-    rejected = history.rejected[:, 0]
+    rejected = history.counts["rejected"][:, 0]
     assert np.array_equal(history.nis_dof[:, 0], 7 - rejected)
     for size in (1, 2, 4):
         assert probable((rejected & size > 0).sum(), runs, rate)
@@ -107,11 +107,11 @@ def test_an_outlier_of_100_sigma_counts_as_missing(iterations):
     spoiled = y + outlying * 100 * signs * np.sqrt(np.diagonal(R))
     gated = extended(model, *start, spoiled, gate=Gate(), iterations=iterations)
     missing = extended(model, *start, np.where(outlying, np.nan, y), iterations=iterations)
-    assert np.array_equal(gated.rejected, outlying.sum(-1))
+    assert np.array_equal(gated.counts["rejected"], outlying.sum(-1))
     assert np.array_equal(gated.nis_dof, missing.nis_dof)
     np.testing.assert_allclose(gated.state, missing.state, atol=1e-10)
     np.testing.assert_allclose(gated.covariance, missing.covariance, atol=1e-12)
-    assert not gated.reopened.any()
+    assert not gated.counts["reopened"].any()
     lost = extended(model, *start, spoiled, iterations=iterations)
     assert rms(lost.state - truth) > 5 * rms(gated.state - truth)
 
@@ -120,7 +120,9 @@ def test_a_gate_that_rejects_nothing_changes_nothing():
     model, _, start, y = campaign(q=1e-3)
     y[:, ::5, 1] = np.nan
     plain, gated = extended(model, *start, y), extended(model, *start, y, gate=Gate(1e-30))
-    for a, b in zip(plain, gated):
+    assert np.array_equal(plain.counts["updates"], gated.counts["updates"])
+    assert not gated.counts["rejected"].any() and not gated.counts["reopened"].any()
+    for a, b in zip(plain[:-1], gated[:-1]):
         assert np.array_equal(a, b)
 
 
@@ -147,16 +149,18 @@ def test_a_jump_locks_out_all_but_the_detector(iterations, q, size, openings):
     freed = extended(model, *start, y + shown, gate=Gate(), **rule)
 
     error = np.abs(locked.state - truth - jump)[::2, -1, 0]
-    assert (error > 0.8 * size).all() and (locked.rejected[::2, 30:] == 2).all()
-    assert not locked.reopened.any()
+    assert (error > 0.8 * size).all() and (locked.counts["rejected"][::2, 30:] == 2).all()
+    assert not locked.counts["reopened"].any()
 
-    assert (freed.rejected[::2, 30:33] == 2).all()
-    assert ((freed.reopened[::2] >= 1) & (freed.reopened[::2] <= openings)).all()
-    assert not freed.rejected[:, -40:].any()
+    assert (freed.counts["rejected"][::2, 30:33] == 2).all()
+    reopened = freed.counts["reopened"][::2]
+    assert ((reopened >= 1) & (reopened <= openings)).all()
+    assert not freed.counts["rejected"][:, -40:].any()
     assert (np.abs(freed.state - truth - jump)[:, -1] < 6 * freed.sigma[:, -1]).all()
     assert (freed.sigma[:, :, :2] < 2).all()
     for name in ("state", "sigma", "nis", "rejected", "reopened"):
-        assert np.array_equal(getattr(freed, name)[1::2], getattr(locked, name)[1::2])
+        first, second = ({**e._asdict(), **e.counts}[name] for e in (freed, locked))
+        assert np.array_equal(first[1::2], second[1::2])
 
 
 def test_a_gate_that_opens_still_keeps_an_outlier_out():
@@ -167,8 +171,8 @@ def test_a_gate_that_opens_still_keeps_an_outlier_out():
     history = extended(model, *start, y, gate=Gate())
     y[:, 33, 1] = np.nan
     missing = extended(model, *start, y, gate=Gate())
-    assert (history.reopened >= 1).all()
-    assert (history.rejected[:, 33] == 1).all()
+    assert (history.counts["reopened"] >= 1).all()
+    assert (history.counts["rejected"][:, 33] == 1).all()
     assert rms(history.state - missing.state) < 0.1 * rms(history.sigma)
 
 
@@ -188,8 +192,8 @@ def test_a_run_that_has_diverged_is_no_longer_counted():
     start[3] = np.nan
     y[:, 20:] += 1e3
     history = extended(model, start, covariance, y, gate=Gate())
-    assert not history.reopened[3] and not history.rejected[3].any()
-    assert (np.delete(history.reopened, 3) > 0).all()
+    assert not history.counts["reopened"][3] and not history.counts["rejected"][3].any()
+    assert (np.delete(history.counts["reopened"], 3) > 0).all()
 
 
 def test_epochs_without_measurements_neither_add_to_a_lockout_nor_end_it():
@@ -212,8 +216,8 @@ def test_a_minority_of_rejections_is_no_lockout():
     model, _, start, y = campaign(q=1e-3)
     y[:, 20:, 0] += 1e4
     history = extended(model, *start, y, gate=Gate())
-    assert (history.rejected[:, 20:] == 1).all()
-    assert not history.reopened.any()
+    assert (history.counts["rejected"][:, 20:] == 1).all()
+    assert not history.counts["reopened"].any()
 
 
 def test_wrong_settings_are_refused():

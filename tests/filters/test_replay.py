@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from debrisest.filters.replay.estimates import ReplayStatus
-from debrisest.filters.replay.evidence import linearize, weigh
 from debrisest.filters.replay.gauss_newton import gauss_newton
+from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import anchors, replay, smooth
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.status import ReplayStatus
 
 F = np.array([[1.0, 0.5], [-0.1, 0.95]])
 H = np.array([[1.0, 0.0], [0.3, 1.0], [0.0, -2.0]])
@@ -85,7 +85,7 @@ def test_it_is_the_kalman_filter_on_a_linear_model(ratio, missing):
         measured[1, 7] = np.nan
     keep = [0, 5]
     estimates = replay(linear_model(), prior, covariance, measured, ratio=ratio, keep=keep)
-    assert np.all(estimates.status == ReplayStatus.CONVERGED)
+    assert np.all(estimates.status == ReplayStatus.CONVERGED.sentence)
     np.testing.assert_array_equal(estimates.kept, [0, 5, EPOCHS - 1])
     for run in range(RUNS):
         expected = kalman(prior[run], covariance[run], measured[run])
@@ -114,7 +114,7 @@ def test_the_smoother_is_the_least_squares_solution():
             np.testing.assert_allclose(
                 final.covariance[run, k], power(k) @ spread @ power(k).T, atol=1e-10
             )
-        assert final.cost[run, -1] == pytest.approx(cost.item())
+        assert final.counts["cost"][run, -1] == pytest.approx(cost.item())
 
 
 def test_anchors_are_spaced_geometrically():
@@ -128,7 +128,9 @@ def test_what_is_not_finite_is_a_value():
     prior[0, 1] = np.nan
     measured[2, 6, 0] = np.inf
     estimates = replay(linear_model(), prior, covariance, measured)
-    expected = [ReplayStatus.NO_START, 0, ReplayStatus.DIVERGED, 0]
+    converged = ReplayStatus.CONVERGED
+    ends = [ReplayStatus.NO_START, converged, ReplayStatus.DIVERGED, converged]
+    expected = [end.sentence for end in ends]
     np.testing.assert_array_equal(estimates.status, expected)
     np.testing.assert_array_equal(estimates.diverged_at, [0, -1, 6, -1])
     assert np.isnan(estimates.state[0]).all()
@@ -138,7 +140,6 @@ def test_what_is_not_finite_is_a_value():
     np.testing.assert_allclose(estimates.state[[1, 3]], clean.state, rtol=0, atol=1e-13)
     final = smooth(linear_model(), prior, covariance, measured, estimates)
     np.testing.assert_array_equal(final.status, expected)
-    assert all(ReplayStatus(code).sentence for code in estimates.status)
 
 
 def test_without_measurements_the_prior_is_propagated():
@@ -162,8 +163,8 @@ def test_the_gate_finds_outliers_of_any_epoch():
     error = np.abs(gated.state[:, -1] - clean.state[:, -1])
     assert np.all(error < 2.0 * clean.sigma[:, -1])
     assert np.abs(open_.state[:, -1] - clean.state[:, -1]).max() > 5.0 * error.max()
-    np.testing.assert_array_equal(gated.rejected[:, 5] >= 1, True)
-    np.testing.assert_array_equal(open_.rejected, 0)
+    np.testing.assert_array_equal(gated.counts["rejected"][:, 5] >= 1, True)
+    assert "rejected" not in open_.counts
 
 
 def test_step_control_only_goes_down():
@@ -171,21 +172,21 @@ def test_step_control_only_goes_down():
     shape, slope = (lambda x: x**3), (lambda x: 3 * x**2)
     model = linear_model(shape, slope)
     prior, covariance, measured, truth = data(6, shape)
-    evidence = weigh(model, prior, covariance, measured)
+    arc = measured_arc(model, prior, covariance, measured)
     start = 0.05 * np.sign(truth)
-    costs = [linearize(model, evidence, start, 8).cost]
+    costs = [linearize(model, arc, start, 8).cost]
     for iterations in (2, 4, 8, 60):
-        solution = gauss_newton(model, evidence, start, 8, iterations)
+        solution = gauss_newton(model, arc, start, 8, iterations)
         costs.append(solution.at.cost)
     assert np.all(np.diff(costs, axis=0) <= 0)
     assert solution.converged.all()
-    at_truth = linearize(model, evidence, truth, 8).cost
+    at_truth = linearize(model, arc, truth, 8).cost
     assert np.median(solution.cost - at_truth) < 0
 
 
 def test_wrong_shapes_are_refused():
     prior, covariance, measured, _ = data(7)
-    with pytest.raises(ValueError, match="need a covariance of shape"):
+    with pytest.raises(ValueError, match="need a start covariance of shape"):
         replay(linear_model(), prior, covariance[..., :1], measured)
     with pytest.raises(ValueError, match="at least 1"):
         replay(linear_model(), prior, covariance, measured, ratio=0.5)
@@ -205,19 +206,19 @@ def rows_of(k):
 def test_costs_are_those_of_the_least_squares_problem():
     """Of the estimate, which is its solution, and of any motion beside it."""
     prior, covariance, measured, truth = data(3)
-    beside = truth
-    options = {"ratio": 2.0, "keep": [3, 7], "beside": beside}
+    reference = truth
+    options = {"ratio": 2.0, "keep": [3, 7], "reference": reference}
     found = replay(linear_model(), prior, covariance, measured, **options)
-    final = smooth(linear_model(), prior, covariance, measured, found, beside=beside)
+    final = smooth(linear_model(), prior, covariance, measured, found, reference=reference)
     for k, estimates in ((3, found), (7, found), (EPOCHS - 1, found), (EPOCHS - 1, final)):
         rows, root = rows_of(k)
         for run in range(RUNS):
             right = np.concatenate([root @ prior[run], (measured[run, : k + 1] / SIGMA).ravel()])
             _, least, *_ = np.linalg.lstsq(rows, right)
-            assert estimates.cost[run, k] == pytest.approx(least.item(), rel=1e-9)
-            other = np.sum((rows @ beside[run] - right) ** 2)
-            assert estimates.cost_beside[run, k] == pytest.approx(other, rel=1e-9)
-    assert np.isnan(np.delete(found.cost_beside, [3, 7, EPOCHS - 1], axis=1)).all()
+            assert estimates.counts["cost"][run, k] == pytest.approx(least.item(), rel=1e-9)
+            other = np.sum((rows @ reference[run] - right) ** 2)
+            assert estimates.counts["cost_of_truth"][run, k] == pytest.approx(other, rel=1e-9)
+    assert np.isnan(np.delete(found.counts["cost_of_truth"], [3, 7, EPOCHS - 1], axis=1)).all()
 
 
 def test_no_estimate_depends_on_the_motion_beside_it():
@@ -226,22 +227,23 @@ def test_no_estimate_depends_on_the_motion_beside_it():
     for gate in (False, True):
         alone = replay(linear_model(), prior, covariance, measured, gate=gate, keep=[4])
         other = replay(
-            linear_model(), prior, covariance, measured, gate=gate, keep=[4], beside=truth
+            linear_model(), prior, covariance, measured, gate=gate, keep=[4], reference=truth
         )
-        for name in ("state", "sigma", "covariance", "nis", "cost"):
+        for name in ("state", "sigma", "covariance", "nis"):
             np.testing.assert_array_equal(getattr(alone, name), getattr(other, name))
-        assert np.isnan(alone.cost_beside).all()
+        np.testing.assert_array_equal(alone.counts["cost"], other.counts["cost"])
+        assert "cost_of_truth" not in alone.counts
 
 
 def test_what_the_gate_rejects_counts_in_neither_cost():
     """An outlier in both costs would not move their difference; in one, by thousands."""
     prior, covariance, measured, truth = data(5)
-    clean = replay(linear_model(), prior, covariance, measured, gate=True, beside=truth)
+    clean = replay(linear_model(), prior, covariance, measured, gate=True, reference=truth)
     wild = measured.copy()
     wild[:, 6, 0] += 200 * SIGMA[0]
-    gated = replay(linear_model(), prior, covariance, wild, gate=True, beside=truth)
+    gated = replay(linear_model(), prior, covariance, wild, gate=True, reference=truth)
     for estimates in (clean, gated):
-        assert estimates.cost[:, -1].max() < 200
-        excess = estimates.cost_beside[:, -1] - estimates.cost[:, -1]
+        assert estimates.counts["cost"][:, -1].max() < 200
+        excess = estimates.counts["cost_of_truth"][:, -1] - estimates.counts["cost"][:, -1]
         assert excess.min() > -1e-6
         assert excess.max() < 40

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import gammaincinv
 
+from debrisest.filters.kalman.unscented import unscented
 from debrisest.filters.model import Model
-from debrisest.filters.unscented import unscented
 
 RUNS, EPOCHS = 300, 40
 F = np.array([[1.0, 1.0], [0.0, 1.0]])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
-from debrisest.filters.unscented import UnscentedParameters, unscented
 
 Q = np.diag([1e-3, 1e-4])
 R = 0.05 * np.eye(2)

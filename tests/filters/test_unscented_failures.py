@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from debrisest.filters.history import FilterStatus
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
-from debrisest.filters.unscented import UnscentedParameters, unscented
+from debrisest.filters.status import FilterStatus
 
 RUNS, EPOCHS, BAD = 5, 12, 2
 GOOD = [run for run in range(RUNS) if run != BAD]
@@ -51,11 +51,12 @@ def test_divergence_stays_in_its_run(cause, redraw):
     given[which][where] = value
     history = unscented(cubic_model(), *given, keep=[3, 8], redraw=redraw)
 
-    for name in ("state", "sigma", "covariance", "nis", "nis_dof", "repairs", "status"):
+    for name in ("state", "sigma", "covariance", "nis", "nis_dof", "status"):
         assert np.array_equal(getattr(history, name)[GOOD], getattr(sound, name)[GOOD]), name
-    assert (sound.status == FilterStatus.FINISHED).all()
+    assert np.array_equal(history.counts["repairs"][GOOD], sound.counts["repairs"][GOOD])
+    assert (sound.status == FilterStatus.FINISHED.sentence).all()
     assert (sound.diverged_at == -1).all()
-    assert history.status[BAD] == status
+    assert history.status[BAD] == status.sentence
     assert history.diverged_at[BAD] == epoch
     for values in (history.state, history.sigma, history.nis):
         assert np.isfinite(values[BAD, :epoch]).all()
@@ -85,12 +86,12 @@ def test_indefinite_start_is_repaired_and_counted():
     covariance[BAD] = np.diag([0.4, 4e-13])
     nearest = unscented(linear_model(), start, covariance, y)
 
-    assert history.repairs.tolist() == [0, 0, 1, 0, 0]
-    assert not sound.repairs.any()
+    assert history.counts["repairs"].tolist() == [0, 0, 1, 0, 0]
+    assert not sound.counts["repairs"].any()
     assert np.array_equal(history.state[GOOD], sound.state[GOOD])
     np.testing.assert_allclose(history.state[BAD], nearest.state[BAD], atol=1e-9)
     np.testing.assert_allclose(history.covariance[BAD], nearest.covariance[BAD], atol=1e-9)
-    assert history.status[BAD] == FilterStatus.FINISHED
+    assert history.status[BAD] == FilterStatus.FINISHED.sentence
 
 
 def test_repair_keeps_the_sound_directions_of_a_correlated_covariance():

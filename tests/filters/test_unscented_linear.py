@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
-from debrisest.filters.unscented import UnscentedParameters, unscented
 
 SPREADS = [
     UnscentedParameters(),
@@ -90,7 +90,7 @@ def test_equals_kalman(seed, n, m, spread, redraw):
         sigma = np.sqrt(np.diagonal(p, axis1=1, axis2=2))
         np.testing.assert_allclose(history.sigma[run], sigma, rtol=1e-7)
     assert np.array_equal(history.nis_dof, np.isfinite(y).sum(-1))
-    assert not history.repairs.any()
+    assert not history.counts["repairs"].any()
 
 
 @pytest.mark.parametrize("redraw", [False, True])
@@ -121,7 +121,7 @@ def test_what_is_predicted_for_a_missing_component_does_not_matter():
 
     sound = unscented(model, start, covariance, y)
     other = unscented(model._replace(measurement=spoiled), start, covariance, y)
-    for a, b in zip(sound, other):
+    for a, b in zip(sound[:-1], other[:-1]):
         assert np.array_equal(a, b)
 
 

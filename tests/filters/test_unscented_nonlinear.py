@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
-from debrisest.filters.unscented import UnscentedParameters, unscented
 
 Q = np.array([[1e-3, 2e-4], [2e-4, 2e-3]])
 R = np.array([[0.02, 0.01], [0.01, 0.05]])

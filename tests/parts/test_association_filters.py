@@ -5,13 +5,13 @@ import pytest
 from pydantic import ValidationError
 
 from debrisest.clock import Clock
-from debrisest.filters.association.scan_model import ScanModel
+from debrisest.filters.scan_model import ScanModel
 from debrisest.parts.filters.association import (
     AssociationFilter,
     JointAssociation,
     KnownAssociation,
-    LinearisedAtTruth,
 )
+from debrisest.parts.filters.bound import LinearisedAtTruth
 from debrisest.roles import Given
 
 RUNS, EPOCHS = 3, 9
@@ -73,7 +73,7 @@ def alone(given):
         ("gate", 0.0),
         ("gate", -5.0),
         ("gate_probability", 0.0),
-        ("misses", "guessed"),
+        ("gate_volume", "guessed"),
         ("method", "known"),
         ("linearised", "guess"),
         ("relinearised_s", 10.0),
@@ -91,7 +91,7 @@ def test_a_key_without_sense_is_refused_by_its_name(key, value):
         {"gate": 1.0},
         {"detection_probability": 0.3},
         {"gate_probability": 0.5},
-        {"misses": "printed"},
+        {"gate_volume": "inverse_unit_ball"},
         {"stacked": True},
         {"linearised": "start"},
         {"linearised": "truth"},

@@ -8,7 +8,9 @@ from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics.relative_motion import hill_frame
-from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkBound, LandmarkFilter
+from debrisest.filters.estimates import Estimates
+from debrisest.parts.filters.bound import LandmarkBound
+from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
 from debrisest.parts.sensors.camera_range import CameraRange
 from debrisest.parts.starts.first_image import FirstImage
 from debrisest.parts.starts.shape_guess import Guessed, ShapeGuess
@@ -17,7 +19,7 @@ from debrisest.parts.truth.orbits import KeplerOrbit
 from debrisest.parts.truth.relative_ellipse import ClosedEllipse
 from debrisest.parts.truth.targets import RigidPoints
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
-from debrisest.roles import Filtered, Given
+from debrisest.roles import Given
 
 CLOCK = Clock(300.0, 5.0)
 WINDOWS = {"windows_s": [50, 100, 200, 900], "spacing_s": [5, 5, 5, 5], "extended_s": []}
@@ -132,7 +134,7 @@ def test_the_sigma_of_a_quaternion_is_that_of_attitudes_so_spread(data) -> None:
     angles = np.array([0.01, 0.02, 0.03])
     sigma = np.zeros(covariance.shape[:-1])
     sigma[:, :3] = angles
-    nothing = Filtered(state[:, None], sigma[:, None], covariance, *[np.empty(0)] * 3, np.empty(0))
+    nothing = Estimates(state[:, None], sigma[:, None], covariance, *[np.empty(0)] * 3, np.empty(0))
     found = chosen.unpack(nothing)["q_hb_sigma"][:, 0]
     turns = quaternion.exp(angles * rng.standard_normal((40_000, 1, 3)))
     spread = (quaternion.multiply(q, turns) - q).std(axis=0)

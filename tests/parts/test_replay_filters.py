@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from debrisest.clock import Clock
+from debrisest.parts.filters.bound import Efficient
 from debrisest.parts.filters.kalman import kept_epochs
-from debrisest.parts.filters.replay import Efficient
 from debrisest.roles import Given
 
 

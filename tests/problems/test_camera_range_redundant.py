@@ -7,15 +7,15 @@ from scipy.integrate import solve_ivp
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.dynamics.pointing import camera_axes, camera_rate
-from debrisest.filters.unscented import UnscentedParameters, unscented
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.problems.camera_range.redundant_model import (
     CORE,
     INERTIA,
     POSITION,
     RATE,
     VELOCITY,
+    CameraGeometry,
     Q,
-    Setup,
     error_names,
     measurement,
     process,
@@ -23,7 +23,7 @@ from debrisest.problems.camera_range.redundant_model import (
 )
 
 N = 1.078007613e-3
-KNOWN = Setup(points=4, mean_motion=N, step=5.0, focal_px=1000.0)
+KNOWN = CameraGeometry(points=4, mean_motion=N, step=5.0, focal_px=1000.0)
 RNG = np.random.default_rng(3)
 
 
@@ -137,7 +137,7 @@ def test_the_filter_improves_on_its_start_and_keeps_a_factor(seed: int) -> None:
     cubature = UnscentedParameters(1.0, 0.0, 0.0)
     covariance = np.diag(sigma**2)[None]
     found = unscented(model, guess[None], covariance, measured[None], cubature, redraw=True)
-    assert found.repairs[0] == 0
+    assert found.counts["repairs"][0] == 0
     error = np.abs(found.state[0, -1] - states[-1])
     assert np.linalg.norm(error[VELOCITY]) < 0.5 * np.linalg.norm((guess - states[0])[VELOCITY])
     assert np.median(error[CORE:]) < 0.05

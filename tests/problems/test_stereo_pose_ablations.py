@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from debrisest.attitude import quaternion
-from debrisest.filters.extended import extended
+from debrisest.filters.kalman.extended import extended
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.additive import additive_model
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from debrisest.assessment.bound import paired_errors
 from debrisest.assessment.consistency import chart_free
-from debrisest.filters.replay.estimates import ReplayStatus
-from debrisest.filters.replay.evidence import linearize, weigh
+from debrisest.filters.bound.motion import paired_errors
 from debrisest.filters.replay.gauss_newton import move
+from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay, smooth
+from debrisest.filters.status import ReplayStatus
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
 
@@ -29,8 +29,8 @@ def test_filter_and_smoother_reach_the_bound(fast):
     last = fast.measured.shape[1] - 1
     filtered = fast.estimate(also=[last])
     final = smooth(fast.model, fast.prior, fast.covariance, fast.measured, filtered)
-    assert np.all(filtered.status == ReplayStatus.CONVERGED)
-    assert np.all(final.status == ReplayStatus.CONVERGED)
+    assert np.all(filtered.status == ReplayStatus.CONVERGED.sentence)
+    assert np.all(final.status == ReplayStatus.CONVERGED.sentence)
     bound = paired_errors(
         fast.model, fast.truth[:, 0], fast.prior, fast.covariance[0], fast.measured
     )
@@ -42,9 +42,9 @@ def test_filter_and_smoother_reach_the_bound(fast):
             size = np.linalg.norm(errors(fast, states)[:, -8:, block], axis=-1).mean(-1)
             least = np.linalg.norm(efficient[:, -8:, block], axis=-1).mean(-1)
             assert np.median(size) < 1.3 * np.median(least)
-    evidence = weigh(fast.model, fast.prior, fast.covariance, fast.measured)
-    at_truth = linearize(fast.model, evidence, fast.truth[:, 0], last).cost
-    for cost in (filtered.cost[:, last], final.cost[:, last]):
+    arc = measured_arc(fast.model, fast.prior, fast.covariance, fast.measured)
+    at_truth = linearize(fast.model, arc, fast.truth[:, 0], last).cost
+    for cost in (filtered.counts["cost"][:, last], final.counts["cost"][:, last]):
         free = chart_free(at_truth, cost, 29)
         assert free.min() > 0
         assert 0.75 < free.mean() < 1.25
@@ -96,8 +96,8 @@ def test_outliers_are_kept_out_by_the_gate_only(experiment):
     for estimates, good in ((gated, True), (open_, False)):
         normalized = (errors(test, estimates.state) / estimates.sigma)[:, -3:, 3:9]
         assert (np.median(np.abs(normalized)) < 2.0) == good
-    assert gated.rejected.sum() > 0.5 * hit[:, 1:].sum()
-    assert open_.rejected.sum() == 0
+    assert gated.counts["rejected"].sum() > 0.5 * hit[:, 1:].sum()
+    assert "rejected" not in open_.counts
 
 
 def test_a_run_alone_is_the_run_in_a_batch(fast):
@@ -108,11 +108,11 @@ def test_a_run_alone_is_the_run_in_a_batch(fast):
 
 def test_the_step_promises_what_it_keeps(fast):
     """Near the minimum the cost falls by the decrement."""
-    evidence = weigh(fast.model, fast.prior, fast.covariance, fast.measured)
-    at = linearize(fast.model, evidence, fast.truth[:, 0], 14)
+    arc = measured_arc(fast.model, fast.prior, fast.covariance, fast.measured)
+    at = linearize(fast.model, arc, fast.truth[:, 0], 14)
     step = np.linalg.solve(at.information, at.gradient[..., None])[..., 0]
     promised = (step * at.gradient).sum(-1)
-    after = linearize(fast.model, evidence, move(fast.model, at.state, step), 14).cost
+    after = linearize(fast.model, arc, move(fast.model, at.state, step), 14).cost
     assert np.median(np.abs(at.cost - after - promised) / promised) < 0.3
 
 

@@ -5,12 +5,12 @@ import pytest
 
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
+from debrisest.filters.estimates import Estimates
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose import data as of_data
 from debrisest.problems.stereo_pose.model import Q, measurement
 from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditive
 from debrisest.problems.stereo_pose.score import plain_covariance, scores
-from debrisest.roles import Filtered
 
 POINTS, EPOCHS = 5, 4
 CLOCK = Clock(float(EPOCHS), 1.0)
@@ -63,7 +63,7 @@ def test_states_and_parts_are_inverse(states, data):
 
 @pytest.mark.parametrize("measures", [None, ["pixels"], ["disparity", "pixels"]])
 def test_rows_come_in_the_order_of_the_model(data, states, measures):
-    known = of_data.setup_of(data, CLOCK, measures)
+    known = of_data.geometry_of(data, CLOCK, measures)
     rows = of_data.measured_of(data, known.shown)
     expected = np.stack([measurement(known, states[:, k], k) for k in range(EPOCHS)], axis=1)
     count = expected.shape[-1] - 3 * known.shown.acceleration
@@ -96,7 +96,7 @@ def test_an_angle_spreads_the_quaternion(states):
     state, sigma = states[:1, :1], np.full((1, 1, 29), 1e-3)
     sigma[..., 9:12] = [1e-3, 2e-3, 4e-3]
     nothing = np.zeros((1, 1, 1))
-    filtered = Filtered(state, sigma, nothing, np.array([0]), nothing, nothing, np.array([""]))
+    filtered = Estimates(state, sigma, nothing, np.array([0]), nothing, nothing, np.array([""]))
     found = StereoPose(kind="stereo_pose").unpack(filtered)["q_lt_sigma"][0, 0]
     turns = sigma[0, 0, 9:12] * np.random.default_rng(1).normal(size=(20000, 3))
     spread = quaternion.multiply(quaternion.exp(turns), state[0, 0, Q]).std(0)

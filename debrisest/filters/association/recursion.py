@@ -6,12 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh, update
-from debrisest.filters.history import History, HistoryWriter, Tally
+from debrisest.filters.estimates import Estimates, EstimatesWriter
+from debrisest.filters.runs import take
+from debrisest.filters.scan_model import ScanModel
 
 
-class Rule(NamedTuple):
+class AssociationSettings(NamedTuple):
     """How detections are judged, and about what the model is linearised."""
 
     gate: float
@@ -23,12 +24,16 @@ class Rule(NamedTuple):
     truth: Array | None
     """What to linearise about instead, (run, time, n)."""
 
+    def of(self, runs: IntArray) -> "AssociationSettings":
+        """Return the settings for some runs."""
+        return self if self.truth is None else self._replace(truth=self.truth[runs])
+
 
 class _Seen(NamedTuple):
     """What the target's track made of the detections of an epoch, each (run,)."""
 
     nis: Array
-    dof: IntArray
+    nis_dof: IntArray
     rejected: IntArray
     validated: IntArray
 
@@ -41,7 +46,7 @@ class _Seen(NamedTuple):
         outside = judged.present[:, 0] & ~judged.valid[:, 0]
         return _Seen(
             self.nis + squared.sum(-1),
-            self.dof + d * (detected > 0.0).sum(-1),
+            self.nis_dof + d * (detected > 0.0).sum(-1),
             self.rejected + d * outside.sum((-2, -1)),
             self.validated + judged.valid[:, 0].sum((-2, -1)),
         )
@@ -52,39 +57,31 @@ def filtered(
     state: Array,
     covariance: Array,
     scans: Array,
-    rule: Rule,
+    settings: AssociationSettings,
     keep: Sequence[int],
-) -> History:
-    """Return the history of track 0; `state` (run, track, n), else as `associated`."""
-    writer = HistoryWriter(model, state[:, 0], covariance[:, 0], scans.shape[1], keep)
-    repairs = np.zeros(len(state), dtype=np.int64)
-    tracks, nominal = Tracks(state, covariance), state
+) -> Estimates:
+    """Return the estimates of track 0; `state` (run, track, n), else as `associated`."""
+    names, epochs, counts = model.error_names, scans.shape[1], {"rejected": 0, "validated": 0}
+    start = state[:, 0], covariance[:, 0]
+    writer = EstimatesWriter(names, *start, epochs, keep, counts, totals=["repairs"])
+    tracks, nominal, going = Tracks(state, covariance), state, writer.runs
     with np.errstate(all="ignore"):
-        for k in range(scans.shape[1]):
-            tracks, nominal = _live(writer, tracks, nominal)
+        for k in range(epochs):
+            if len(going) < len(nominal):
+                model, tracks, nominal = model.of(going), take(tracks, going), nominal[going]
+                scans, settings = scans[going], settings.of(going)
+            if len(going) == 0:
+                break
             if k > 0:
                 tracks, nominal = _predict(model, tracks, nominal, k - 1)
-            if rule.truth is not None:
-                nominal = rule.truth[:, None, k]
-            tracks, seen = _look(model, tracks, nominal, scans[:, k], rule, k)
-            if rule.relinearise > 0 and (k + 1) % rule.relinearise == 0:
+            if settings.truth is not None:
+                nominal = settings.truth[:, None, k]
+            tracks, seen = _look(model, tracks, nominal, scans[:, k], settings, k)
+            if settings.relinearise > 0 and (k + 1) % settings.relinearise == 0:
                 nominal = tracks.state
-            tally = Tally(
-                *(np.ones_like(repairs), seen.rejected, np.zeros_like(repairs)), seen.validated
-            )
             target = tracks.state[:, 0], tracks.covariance[:, 0]
-            writer.record(k, *target, seen.nis, seen.dof, repairs, tally)
-    return writer.history()
-
-
-def _live(writer: HistoryWriter, tracks: Tracks, nominal: Array) -> tuple[Tracks, Array]:
-    """Replace the target of diverged runs by what the writer has for them."""
-    if writer.alive.all():
-        return tracks, nominal
-    state, covariance = writer.live(tracks.state[:, 0], tracks.covariance[:, 0])
-    live = Tracks(tracks.state.copy(), tracks.covariance.copy())
-    live.state[:, 0], live.covariance[:, 0] = state, covariance
-    return live, np.where(writer.alive[:, None, None], nominal, live.state)
+            going = writer.record(k, *target, seen._asdict())
+    return writer.estimates()
 
 
 def _predict(model: ScanModel, tracks: Tracks, nominal: Array, k: int) -> tuple[Tracks, Array]:
@@ -98,19 +95,24 @@ def _predict(model: ScanModel, tracks: Tracks, nominal: Array, k: int) -> tuple[
 
 
 def _look(
-    model: ScanModel, tracks: Tracks, nominal: Array, scan: Array, rule: Rule, k: int
+    model: ScanModel,
+    tracks: Tracks,
+    nominal: Array,
+    scan: Array,
+    settings: AssociationSettings,
+    k: int,
 ) -> tuple[Tracks, _Seen]:
     """Update by all sensors; `scan` is (run, sensor, detection, d)."""
     shown = model.points(nominal, k)
     h = np.broadcast_to(model.points_jacobian(nominal, k), (*shown.shape, nominal.shape[-1]))
     nothing = np.zeros(len(scan), dtype=np.int64)
     seen = _Seen(nothing.astype(np.float64), nothing, nothing, nothing)
-    for group in _groups(shown.shape[-2], rule.stacked):
+    for group in _groups(shown.shape[-2], settings.stacked):
         lag = tracks.state - nominal
         predicted = shown[:, :, group] + (h[:, :, group] @ lag[:, :, None, :, None])[..., 0]
         innovation = scan[:, None, group] - predicted[..., None, :]
         part = Scan(innovation, h[:, :, group])
-        tracks, judged = update(tracks, part, model.noise, rule.gate, rule.weigh)
+        tracks, judged = update(tracks, part, model.noise, settings.gate, settings.weigh)
         seen = seen.plus(judged, shown.shape[-1])
     return tracks, seen
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.association.joint import joint
-from debrisest.filters.association.recursion import Rule, filtered
-from debrisest.filters.association.scan_model import ScanModel
+from debrisest.filters.association.recursion import AssociationSettings, filtered
 from debrisest.filters.association.update import Weigh
 from debrisest.filters.association.weights import Validation, nearest, probabilistic
-from debrisest.filters.history import History
+from debrisest.filters.estimates import Estimates
+from debrisest.filters.scan_model import ScanModel
 
 Method = Literal["probabilistic", "nearest", "known"]
 
@@ -29,7 +29,7 @@ def associated(
     relinearise: int = 1,
     truth: Array | None = None,
     keep: Sequence[int] = (),
-) -> History:
+) -> Estimates:
     """Filter a batch of runs, each with one target.
 
     `state` (run, n) and `covariance` (run, n, n) are the prior of epoch 0, which scan 0 updates;
@@ -55,8 +55,8 @@ def associated(
     """
     gate = np.inf if method == "known" else validation.gate
     weigh = _weigh(validation, method, scans)
-    rule = Rule(gate, weigh, stacked, relinearise if truth is None else 0, truth)
-    return filtered(model, state[:, None], covariance[:, None], scans, rule, keep)
+    settings = AssociationSettings(gate, weigh, stacked, relinearise if truth is None else 0, truth)
+    return filtered(model, state[:, None], covariance[:, None], scans, settings, keep)
 
 
 def jointly_associated(
@@ -68,7 +68,7 @@ def jointly_associated(
     *,
     stacked: bool = False,
     keep: Sequence[int] = (),
-) -> History:
+) -> Estimates:
     """Filter a batch of runs, each with a target and neighbours that give detections as well.
 
     As `associated`, with `state` (run, track, n) and `covariance` (run, track, n, n): track 0 is
@@ -76,8 +76,8 @@ def jointly_associated(
     and Scheffe 1983). A track that is NaN is not there.
     """
     weigh = partial(_joint_by_sensor, validation=validation.checked(), d=scans.shape[-1])
-    rule = Rule(validation.gate, weigh, stacked, relinearise=1, truth=None)
-    return filtered(model, state, covariance, scans, rule, keep)
+    settings = AssociationSettings(validation.gate, weigh, stacked, relinearise=1, truth=None)
+    return filtered(model, state, covariance, scans, settings, keep)
 
 
 def labelled(scans: Array, index: IntArray) -> Array:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
-from debrisest.filters.covariance import solve
+from debrisest.filters.linear_algebra import solve
 
 Weigh = Callable[[Array], Array]
 """From squared distances (run, track, sensor, detection), infinite where not validated, to the
@@ -84,7 +84,7 @@ def _judge(
 ) -> tuple[Judged, Array]:
     present = usable[..., None] & np.isfinite(innovation).all(-1)
     nu = np.where(present[..., None], innovation, 0.0)
-    white = np.swapaxes(_solve(total, np.swapaxes(nu, -2, -1)), -2, -1)
+    white = np.swapaxes(solve(total, np.swapaxes(nu, -2, -1)), -2, -1)
     distance = (nu * white).sum(-1)
     valid = present & (distance <= gate)
     distance = np.where(valid, distance, np.inf)
@@ -106,7 +106,7 @@ def _moved(tracks: Tracks, h: Array, shown: Array, noise: Array, moments: _Momen
     cross = stacked @ tracks.covariance
     every = np.broadcast_to(noise, shown.shape)
     total = cross @ np.swapaxes(stacked, -2, -1) + _block_diagonal(every)
-    gain = _solve(total, cross)
+    gain = solve(total, cross)
     correction = moments.mean.reshape(*stacked.shape[:2], 1, -1) @ gain
     kept = np.eye(h.shape[-1]) - np.swapaxes(trusted, -2, -1) @ gain
     spread = _block_diagonal(b * every + b * (1.0 - b) * shown + moments.spread)
@@ -131,9 +131,3 @@ def _block_diagonal(blocks: Array) -> Array:
     for s in range(sensors):
         full[:, :, s, :, s] = blocks[:, :, s]
     return full.reshape(*blocks.shape[:2], sensors * d, sensors * d)
-
-
-def _solve(matrix: Array, right: Array) -> Array:
-    """Solution for every leading index; NaN where the matrix is singular."""
-    solved = solve(matrix.reshape(-1, *matrix.shape[-2:]), right.reshape(-1, *right.shape[-2:]))
-    return solved.reshape(right.shape)

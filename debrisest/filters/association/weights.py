@@ -1,14 +1,23 @@
 """Probabilities that a detection is the target's, for one track at a time."""
 
+from collections.abc import Callable
 from math import gamma, pi
-from typing import Literal, NamedTuple, get_args
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import gammainc
 
 from debrisest.arrays import Array, IntArray
 
-Misses = Literal["corrected", "printed"]
+
+def unit_ball(d: int) -> float:
+    """Volume of the unit ball of d dimensions, C_d."""
+    return float(pi ** (0.5 * d) / gamma(0.5 * d + 1.0))
+
+
+def inverse_unit_ball(d: int) -> float:
+    """1 / C_d, which Li et al. (Eq. 13) have in its place: b is too large by C_d^2, 9.9 for two."""
+    return 1.0 / unit_ball(d)
 
 
 class Validation(NamedTuple):
@@ -18,10 +27,10 @@ class Validation(NamedTuple):
     """Largest squared distance d^T S^-1 d of a detection, gamma; of two components 99 % pass."""
     detection_probability: float = 0.99
     """That the target gives a detection, P_D."""
-    misses: Misses = "corrected"
-    """Weight of "none of them is the target's", see `absence_weight`."""
     gate_probability: float | None = None
     """That the target's detection passes the gate, P_G; without it, what chi-square says."""
+    ball: Callable[[int], float] = unit_ball
+    """Volume of the gate by d, for |S| = gamma = 1, by which clutter is spread in it."""
 
     def passing(self, d: int) -> float:
         """Return P_G of a detection of d components."""
@@ -37,8 +46,6 @@ class Validation(NamedTuple):
             )
         if self.gate_probability is not None and not 0.0 < self.gate_probability <= 1.0:
             raise ValueError(f"a gate probability above 0, at most 1, not {self.gate_probability}")
-        if self.misses not in get_args(Misses):
-            raise ValueError(f"misses must be one of {get_args(Misses)}, not {self.misses!r}")
         return self
 
 
@@ -59,15 +66,12 @@ def absence_weight(count: IntArray, validation: Validation, d: int) -> Array:
     ball's volume C_d, it is (Bar-Shalom and Fortmann 1988)
 
         b = (2 pi / gamma)^(d/2) m (1 / C_d) (1 - P_D P_G) / P_D .
-
-    Li et al. (Eq. 13) print C_d instead of 1 / C_d, which is too large by C_d^2, 9.9 for d = 2:
-    `misses="printed"`.
     """
-    ball = pi ** (0.5 * d) / gamma(0.5 * d + 1.0)
-    volume = 1.0 / ball if validation.misses == "printed" else ball
     detected = validation.detection_probability
     missed = (1.0 - detected * validation.passing(d)) / detected
-    return np.asarray(count * ((2.0 * pi / validation.gate) ** (0.5 * d) * missed / volume))
+    return np.asarray(
+        count * ((2.0 * pi / validation.gate) ** (0.5 * d) * missed / validation.ball(d))
+    )
 
 
 def weights(distance: Array, validation: Validation, d: int) -> Weights:

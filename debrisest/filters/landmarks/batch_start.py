@@ -6,20 +6,20 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.landmarks.cost import Prior, Unknowns
 from debrisest.filters.landmarks.growing_windows import Fit, Window, fit, fresh
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
-from debrisest.filters.replay.evidence import take
-from debrisest.filters.scaled import scaled_inverse
+from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.runs import put, take
 from debrisest.outcome import Outcome
 
 _PRUNE = 100.0
 """Excess of cost beyond the other solution's at which the mirror is given up early."""
-_TOLD_APART = 20.0
+_DECISIVE = 20.0
 """Difference of the costs of two solutions, twice the logarithm of their odds, that decides."""
 _VAGUE = 0.03
 """Sigma of the points by their distance from the centre, above which the shape is not known."""
-_CONFIRMED_SHARE, _CONFIRMED_SIGHTS = 0.6, 5
+_CONFIRMED_SHARE, _CONFIRMED_SIGHTINGS = 0.6, 5
 _FEWEST = 4
 
 
@@ -82,17 +82,17 @@ class Started(NamedTuple):
 
 class _Problem(NamedTuple):
     model: LandmarkModel
-    sights: Sights
+    observed: Observations
     prior: Prior
     batch: Batch
 
     def of(self, runs: IntArray) -> "_Problem":
-        part = self.model.of(runs), self.sights.at(runs), take(self.prior, runs)
+        part = self.model.of(runs), self.observed.at(runs), take(self.prior, runs)
         return _Problem(*part, self.batch)
 
 
 def batch_start(
-    model: LandmarkModel, sights: Sights, parameters: Array, covariance: Array, batch: Batch
+    model: LandmarkModel, observed: Observations, parameters: Array, covariance: Array, batch: Batch
 ) -> Started:
     """Estimate the start of every run from its first windows.
 
@@ -101,7 +101,7 @@ def batch_start(
     """
     runs = len(parameters)
     mean = np.concatenate([parameters, np.zeros((runs, 3 * model.landmarks))], axis=-1)
-    task = _Problem(model, sights, Prior(mean, scaled_inverse(covariance)), batch)
+    task = _Problem(model, observed, Prior(mean, scaled_inverse(covariance)), batch)
     best, other = _solve(task, parameters)
     restarts = np.zeros(runs, dtype=np.int64)
     for attempt in range(batch.restarts):
@@ -109,14 +109,14 @@ def batch_start(
         if len(bad) == 0:
             break
         part = task.of(bad)
-        new, beside = _solve(part, _redrawn(part, parameters[bad], covariance[bad], attempt))
+        new, second = _solve(part, _redrawn(part, parameters[bad], covariance[bad], attempt))
         won = new.found.value < best.found.value[bad]
-        best.put(bad[won], new.of(np.flatnonzero(won)))
-        other.put(bad[won], beside.of(np.flatnonzero(won)))
+        put(best, bad[won], take(new, np.flatnonzero(won)))
+        put(other, bad[won], take(second, np.flatnonzero(won)))
         restarts[bad] = attempt + 1
     last = np.full(runs, batch.windows[-1].last)
     gap = _gap(best, other)
-    unclear = np.flatnonzero((gap < _TOLD_APART) | _vague(best))
+    unclear = np.flatnonzero((gap < _DECISIVE) | _vague(best))
     if len(unclear) and batch.extended:
         _extend(task, best, other, unclear, gap)
         last[unclear] = batch.extended[-1].last
@@ -127,24 +127,24 @@ def _solve(task: _Problem, parameters: Array) -> tuple[Fit, Fit]:
     """Better one of the solution and its mirror, and the other one."""
     model, batch = task.model, task.batch
     at, prior = fresh(model, parameters, task.prior)
-    best = fit(model, task.sights, at, prior, batch.windows, batch.iterations, batch.robust)
+    best = fit(model, task.observed, at, prior, batch.windows, batch.iterations, batch.robust)
     best, other = _ordered(best, _mirrored(task, best, batch.windows[2::2]))
     bad = np.flatnonzero(~(best.ratio < batch.limit))
     if len(bad) and batch.mirrored:
-        part, wrong = task.of(bad), best.of(bad)
+        part, wrong = task.of(bad), take(best, bad)
         for old, new in zip(
             (best, other), _ordered(wrong, _mirrored(part, wrong, batch.windows[1::2]))
         ):
-            old.put(bad, new)
+            put(old, bad, new)
     return best, other
 
 
 def _ordered(best: Fit, other: Fit) -> tuple[Fit, Fit]:
     """Both fits, the one with the lower cost first."""
     swapped = np.flatnonzero(other.found.value < best.found.value)
-    former = best.of(swapped)
-    best.put(swapped, other.of(swapped))
-    other.put(swapped, former)
+    former = take(best, swapped)
+    put(best, swapped, take(other, swapped))
+    put(other, swapped, former)
     return best, other
 
 
@@ -152,7 +152,7 @@ def _mirrored(task: _Problem, best: Fit, windows: Sequence[Window]) -> Fit:
     """Fit that begins at the mirror; where it is hopeless, it ends early, with infinite cost."""
     batch = task.batch
     runs = np.arange(len(best.ratio))
-    result = best.of(runs)
+    result = take(best, runs)
     result.found.value[:] = np.inf
     if not batch.mirrored:
         return result
@@ -161,16 +161,16 @@ def _mirrored(task: _Problem, best: Fit, windows: Sequence[Window]) -> Fit:
     for window in dict.fromkeys([*windows, batch.windows[-1]]):
         part = task.of(runs)
         found = fit(
-            *(part.model, part.sights, at, take(best.prior, runs)),
+            *(part.model, part.observed, at, take(best.prior, runs)),
             *([window], batch.iterations, batch.robust),
         )
-        excess = found.found.freedom * (found.ratio - best.ratio[runs])
+        excess = found.found.dof * (found.ratio - best.ratio[runs])
         kept = np.flatnonzero(excess < _PRUNE)
-        found, runs = found.of(kept), runs[kept]
+        found, runs = take(found, kept), runs[kept]
         if len(runs) == 0:
             return result
         at = found.at
-    result.put(runs, found)
+    put(result, runs, found)
     return result
 
 
@@ -183,12 +183,12 @@ def _extend(task: _Problem, best: Fit, other: Fit, runs: IntArray, gap: Array) -
     other.found.value[runs[~both]] = np.inf
     for old, chosen in ((best, runs), (other, runs[both])):
         if len(chosen):
-            part, begin = task.of(chosen), old.of(chosen)
+            part, begin = task.of(chosen), take(old, chosen)
             found = fit(
-                *(part.model, part.sights, begin.at, begin.prior),
+                *(part.model, part.observed, begin.at, begin.prior),
                 *(batch.extended, batch.iterations, batch.robust),
             )
-            old.put(chosen, found)
+            put(old, chosen, found)
     _ordered(best, other)
 
 
@@ -231,15 +231,15 @@ def _handed_on(
     task: _Problem, best: Fit, gap: Array, last: IntArray, restarts: IntArray
 ) -> Started:
     batch = task.batch
-    core, freedom = task.model.start(best.at.parameters)
+    core, by_parameters = task.model.start(best.at.parameters)
     covariance = batch.inflation * scaled_inverse(best.found.information)
-    status = np.where(gap < _TOLD_APART, StartStatus.AMBIGUOUS, StartStatus.FOUND)
+    status = np.where(gap < _DECISIVE, StartStatus.AMBIGUOUS, StartStatus.FOUND)
     present = _confirmed(best)
     status = np.where(present.sum(-1) < _FEWEST, StartStatus.TOO_FEW, status)
     status = np.where(best.ratio < batch.limit, status, StartStatus.REJECTED)
-    n_c, n_x = freedom.shape[-2:]
+    n_c, n_x = by_parameters.shape[-2:]
     whole = np.zeros((len(core), n_c + covariance.shape[-1] - n_x, covariance.shape[-1]))
-    whole[:, :n_c, :n_x] = freedom
+    whole[:, :n_c, :n_x] = by_parameters
     whole[:, n_c:, n_x:] = np.repeat(present, 3, axis=-1)[..., None] * np.eye(3 * present.shape[-1])
     spread = whole @ covariance @ np.swapaxes(whole, -1, -2)
     return Started(
@@ -250,5 +250,5 @@ def _handed_on(
 def _confirmed(best: Fit) -> BoolArray:
     """Landmarks of which most sightings agree with the fit."""
     seen, agreeing = best.found.sightings, best.found.agreeing
-    enough = (agreeing > _CONFIRMED_SHARE * seen) & (seen >= _CONFIRMED_SIGHTS)
+    enough = (agreeing > _CONFIRMED_SHARE * seen) & (seen >= _CONFIRMED_SIGHTINGS)
     return np.asarray(best.at.placed & enough)

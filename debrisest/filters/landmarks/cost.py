@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Rows, Sights
-from debrisest.filters.weights import CAUCHY_SCALE
+from debrisest.filters.landmark_model import LandmarkModel, Observations, Rows
+from debrisest.filters.weights import CAUCHY_SCALE, cauchy_loss, cauchy_weight
 
 _AGREEING = 4.0
 """Sigmas within which a landmark's residual is no false match."""
@@ -53,24 +53,24 @@ class Cost(NamedTuple):
     """Frames that show a landmark, (run, N)."""
     agreeing: IntArray
     """Those that do not look like false matches."""
-    freedom: Array
+    dof: Array
     """Components that count, (run,)."""
 
 
 def cost(
     model: LandmarkModel,
-    sights: Sights,
+    observed: Observations,
     prior: Prior,
     at: Unknowns,
     frames: IntArray,
     robust: bool,
 ) -> Cost:
     """Linearise the cost of the ``frames``, ascending epochs, at unknowns of all the runs."""
-    core, freedom = model.start(at.parameters)
+    core, by_parameters = model.start(at.parameters)
     cores, transitions = model.trajectory(core, int(frames[-1]))
-    seen = sights.at(slice(None), frames)
+    seen = observed.at(slice(None), frames)
     rows = model.rows(cores[:, frames], at.points[:, None], frames)
-    by_start = transitions[:, frames] @ freedom[:, None]
+    by_start = transitions[:, frames] @ by_parameters[:, None]
     used = seen.seen & at.placed[:, None, :, None]
     residual = np.where(used, (seen.shown - rows.shown) / model.sigma, 0.0)
     squares = (residual**2).sum(-1)
@@ -97,14 +97,13 @@ def cost(
 
 
 def _cauchy(squares: Array) -> Array:
-    return np.asarray((1.0 + squares / CAUCHY_SCALE**2) ** -0.5)
+    return cauchy_weight(squares / CAUCHY_SCALE**2)
 
 
 def _loss(squares: Array, robust: bool) -> Array:
     """Sum over the epochs of squares (run, epoch, .), which Cauchy's loss lets grow slowly."""
-    if robust:
-        squares = CAUCHY_SCALE**2 * np.log1p(squares / CAUCHY_SCALE**2)
-    return np.asarray(squares.sum((-2, -1)))
+    loss = cauchy_loss(squares / CAUCHY_SCALE**2) if robust else squares
+    return np.asarray(loss.sum((-2, -1)))
 
 
 def _landmark_terms(
@@ -165,7 +164,7 @@ def _without_shared(
 
 
 def _common_terms(
-    model: LandmarkModel, rows: Rows, seen: Sights, by_start: Array, robust: bool
+    model: LandmarkModel, rows: Rows, seen: Observations, by_start: Array, robust: bool
 ) -> tuple[Array, Array, Array]:
     """Information, gradient and loss of the common rows, each weighed by itself."""
     difference = (seen.common - rows.common) / model.common_sigma

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.descent import Damping, descend
+from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.landmarks.cost import Cost, Prior, Unknowns, cost
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
-from debrisest.filters.replay.evidence import put, take
-from debrisest.filters.scaled import scaled_solve
+from debrisest.filters.linear_algebra import scaled_solve
+from debrisest.filters.runs import take
 
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
 _FEW, _PATIENCE = 5, 3
@@ -43,18 +44,7 @@ class Fit(NamedTuple):
     @property
     def ratio(self) -> Array:
         """Cost per degree of freedom (run,), about one for the right minimum."""
-        return np.asarray(self.found.value / np.maximum(self.found.freedom, 1))
-
-    def of(self, runs: IntArray) -> "Fit":
-        """Return the fits of some runs."""
-        return Fit(take(self.at, runs), take(self.prior, runs), take(self.found, runs))
-
-    def put(self, runs: IntArray, other: "Fit") -> None:
-        """Replace those of some runs, in place."""
-        for mine, new in zip(
-            (self.at, self.prior, self.found), (other.at, other.prior, other.found)
-        ):
-            put(mine, runs, new)
+        return np.asarray(self.found.value / np.maximum(self.found.dof, 1))
 
 
 def fresh(model: LandmarkModel, parameters: Array, prior: Prior) -> tuple[Unknowns, Prior]:
@@ -67,7 +57,7 @@ def fresh(model: LandmarkModel, parameters: Array, prior: Prior) -> tuple[Unknow
 
 def fit(
     model: LandmarkModel,
-    sights: Sights,
+    observed: Observations,
     at: Unknowns,
     prior: Prior,
     windows: Sequence[Window],
@@ -79,24 +69,24 @@ def fit(
     The last one, from which no other will go on, may take `_PATIENCE` times as many.
     """
     for window in windows:
-        at, prior = place(model, sights, at, prior, window.last)
+        at, prior = place(model, observed, at, prior, window.last)
         most = iterations if window is not windows[-1] else _PATIENCE * iterations
-        found = _descend(model, sights, at, prior, window.frames, most, robust)
-    return Fit(at, prior, found)
+        found = _descend(model, observed, at, prior, window.frames, most, robust)
+    return found
 
 
 def place(
-    model: LandmarkModel, sights: Sights, at: Unknowns, prior: Prior, last: int
+    model: LandmarkModel, observed: Observations, at: Unknowns, prior: Prior, last: int
 ) -> tuple[Unknowns, Prior]:
     """Give a place to the landmarks that were seen for the first time up to epoch ``last``."""
-    seen = model.placeable(sights.seen[:, : last + 1])
+    seen = model.placeable(observed.seen[:, : last + 1])
     new = seen.any(1) & ~at.placed
     if not new.any():
         return at, prior
-    first = _typical_sighting(sights.shown[..., : model.directions], seen)
+    first = _typical_sighting(observed.shown[..., : model.directions], seen)
     cores, _ = model.trajectory(model.start(at.parameters)[0], last)
     runs, landmarks = np.arange(len(first))[:, None], np.arange(first.shape[1])
-    points, _, _ = model.place(cores[runs, first], sights.shown[runs, first, landmarks], first)
+    points, _, _ = model.place(cores[runs, first], observed.shown[runs, first, landmarks], first)
     found = Unknowns(at.parameters, np.where(new[..., None], points, at.points), at.placed | new)
     n_x = at.parameters.shape[-1]
     mean = prior.mean.copy()
@@ -121,32 +111,22 @@ def _typical_sighting(directions: Array, seen: BoolArray) -> IntArray:
 
 def _descend(
     model: LandmarkModel,
-    sights: Sights,
+    observed: Observations,
     at: Unknowns,
     prior: Prior,
     frames: IntArray,
     iterations: int,
     robust: bool,
-) -> Cost:
-    """Lower the cost of every run, each with a damping of its own; ``at`` is changed in place."""
-    best = _usable(cost(model, sights, prior, at, frames, robust))
-    damping = np.full(len(best.value), _FIRST_DAMPING)
-    active = np.isfinite(best.value)
-    for _ in range(iterations - 1):
-        runs = np.flatnonzero(active)
-        if len(runs) == 0:
-            break
-        here = take(best, runs)
-        step, promise = _step(here, damping[runs])
-        trial = take(at, runs).moved(step)
-        part = model.of(runs), sights.at(runs), take(prior, runs)
-        new = _usable(cost(*part, trial, frames, robust))
-        better = new.value <= here.value
-        put(best, runs[better], take(new, np.flatnonzero(better)))
-        put(at, runs[better], take(trial, np.flatnonzero(better)))
-        damping[runs] = _next_damping(damping[runs], better)
-        active[runs] = ~((promise < _DECREASE) | (damping[runs] >= _MOST_DAMPING))
-    return best
+) -> Fit:
+    """Lower the cost of every run; ``at`` is changed in place."""
+
+    def trial(best: Fit, runs: IntArray, step: Array) -> Fit:
+        moved, part = take(best.at, runs).moved(step), take(prior, runs)
+        found = cost(model.of(runs), observed.at(runs), part, moved, frames, robust)
+        return Fit(moved, part, _usable(found))
+
+    first = Fit(at, prior, _usable(cost(model, observed, prior, at, frames, robust)))
+    return descend(first, lambda fit: fit.found.value, _step, trial, _DAMPING, iterations)[0]
 
 
 def _usable(found: Cost) -> Cost:
@@ -156,8 +136,9 @@ def _usable(found: Cost) -> Cost:
     return found
 
 
-def _step(at: Cost, damping: Array) -> tuple[Array, Array]:
+def _step(fit: Fit, _: IntArray, damping: Array) -> tuple[Array, Array]:
     """Damped step and the decrease of the cost that it promises."""
+    at = fit.found
     size = np.diagonal(at.information, 0, -2, -1)
     damped = at.information.copy()
     index = np.arange(size.shape[-1])
@@ -170,3 +151,10 @@ def _step(at: Cost, damping: Array) -> tuple[Array, Array]:
 
 def _next_damping(damping: Array, better: BoolArray) -> Array:
     return np.where(better, np.maximum(damping / 10.0, _LEAST_DAMPING), 10.0 * damping)
+
+
+def _done(taken: Array, _: Array, damping: Array) -> BoolArray:
+    return np.asarray((taken < _DECREASE) | (damping >= _MOST_DAMPING))
+
+
+_DAMPING = Damping(_FIRST_DAMPING, _next_damping, _done)

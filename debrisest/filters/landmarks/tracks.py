@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
+from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.landmarks.update import Belief
 
 CONFIRMING, PATIENCE = 5, 6
@@ -25,8 +25,6 @@ class Tracks(NamedTuple):
     """Frames that passed the gate since the insertion."""
     misses: IntArray
     """Rejections in a row."""
-    dropped: IntArray
-    """How often it was dropped."""
 
     @property
     def confirmed(self) -> BoolArray:
@@ -37,7 +35,7 @@ class Tracks(NamedTuple):
 def begin(present: BoolArray) -> Tracks:
     """Tracks of landmarks that a batch has confirmed, or of none."""
     none = np.zeros(present.shape, dtype=np.int64)
-    return Tracks(present.copy(), CONFIRMING * present, none, none.copy())
+    return Tracks(present.copy(), CONFIRMING * present, none)
 
 
 def judged(tracks: Tracks, shown: BoolArray, accepted: BoolArray) -> Tracks:
@@ -46,12 +44,7 @@ def judged(tracks: Tracks, shown: BoolArray, accepted: BoolArray) -> Tracks:
     hits = tracks.hits + accepted
     misses = np.where(shown, (tracks.misses + 1) * rejected, tracks.misses)
     lost = rejected & ((hits < CONFIRMING) | (misses >= PATIENCE))
-    return Tracks(
-        tracks.present & ~lost,
-        np.where(lost, 0, hits),
-        np.where(lost, 0, misses),
-        tracks.dropped + lost,
-    )
+    return Tracks(tracks.present & ~lost, np.where(lost, 0, hits), np.where(lost, 0, misses))
 
 
 def without(belief: Belief, lost: BoolArray) -> Belief:
@@ -62,7 +55,7 @@ def without(belief: Belief, lost: BoolArray) -> Belief:
 
 
 def inserted(
-    model: LandmarkModel, belief: Belief, sights: Sights, new: BoolArray, k: int
+    model: LandmarkModel, belief: Belief, observed: Observations, new: BoolArray, k: int
 ) -> Belief:
     """Belief with new landmarks (run, N), their errors correlated with the core's.
 
@@ -71,7 +64,7 @@ def inserted(
     """
     runs, n_c = len(new), model.errors
     cores = np.broadcast_to(belief.core[:, None], (*new.shape, belief.core.shape[-1]))
-    points, by_core, own = model.place(cores, sights.shown, np.full(new.shape, k))
+    points, by_core, own = model.place(cores, observed.shown, np.full(new.shape, k))
     extend = np.zeros_like(belief.covariance)
     index = np.arange(extend.shape[-1])
     extend[:, index, index] = _kept(belief, new)

@@ -3,12 +3,14 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import gammainccinv
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.covariance import solve
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights
+from debrisest.filters.gate import chi_square_limits, group_squares
+from debrisest.filters.iterated import iterate
+from debrisest.filters.landmark_model import LandmarkModel, Observations
+from debrisest.filters.linear_algebra import solve
 from debrisest.filters.missing import drop_missing
+from debrisest.filters.runs import put, take
 
 
 class Belief(NamedTuple):
@@ -19,7 +21,7 @@ class Belief(NamedTuple):
     covariance: Array
 
 
-class Rule(NamedTuple):
+class UpdateSettings(NamedTuple):
     """How a frame is used."""
 
     iterations: int = 3
@@ -34,10 +36,10 @@ class Frame(NamedTuple):
     """Figures of a frame, (run,) each, and which landmarks were accepted, (run, N)."""
 
     nis: Array
-    dof: IntArray
+    nis_dof: IntArray
     rejected: IntArray
     accepted: BoolArray
-    iterations: IntArray
+    updates: IntArray
 
 
 class _Linear(NamedTuple):
@@ -60,25 +62,25 @@ class _Step(NamedTuple):
 def update(
     model: LandmarkModel,
     prior: Belief,
-    sights: Sights,
+    observed: Observations,
     k: int,
-    rule: Rule,
+    settings: UpdateSettings,
     inflation: float = 1.0,
 ) -> tuple[Belief, Frame]:
-    """Update with frame k, whose ``sights (run, ...)`` may be masked; noise variance inflated.
+    """Update with frame k, whose ``observed (run, ...)`` may be masked; noise variance inflated.
 
     Gauss-Newton steps x_i+1 = x- [+] K_i (nu(x_i) - H_i (x- [-] x_i)). The gate judges each
     landmark, and each common row by itself, by its innovation at x-. The covariance update is
     Joseph's, multiplied out: ``P - K W^T - W K^T`` with ``W = P H^T - K S / 2`` costs a quarter and
     depends on errors of the gain in second order only, too.
     """
-    linear = _linearise(model, prior.core, prior.points, sights, k, inflation)
-    used, accepted = _gated(model, prior, sights, linear, rule)
-    rejected = sights.seen.sum((-2, -1)) + sights.common_seen.sum(-1) - used.sum(-1)
+    linear = _linearise(model, prior.core, prior.points, observed, k, inflation)
+    used, accepted = _gated(model, prior, observed, linear, settings)
+    rejected = observed.seen.sum((-2, -1)) + observed.common_seen.sum(-1) - used.sum(-1)
     step = _gauss_newton(prior, linear, used)
     innovation = np.where(used, linear.innovation, 0.0)
     nis = (innovation * solve(step.total, innovation[..., None])[..., 0]).sum(-1)
-    count = _iterate(model, prior, sights, k, rule, inflation, used, step)
+    count = _iterate(model, prior, observed, k, settings, inflation, used, step)
     core, points = _moved(model, prior, step.correction)
     change = step.gain @ np.swapaxes(step.cross - 0.5 * step.gain @ step.total, -1, -2)
     covariance = prior.covariance - change - np.swapaxes(change, -1, -2)
@@ -88,38 +90,42 @@ def update(
 def _iterate(
     model: LandmarkModel,
     prior: Belief,
-    sights: Sights,
+    observed: Observations,
     k: int,
-    rule: Rule,
+    settings: UpdateSettings,
     inflation: float,
     used: BoolArray,
     step: _Step,
 ) -> IntArray:
-    """Go on from the first step, changed in place, until no run moves; number of steps (run,)."""
-    last, moving = np.zeros_like(step.correction), np.asarray(used.any(-1))
-    count = np.ones(len(moving), dtype=np.int64)
+    """Go on from the first step, changed in place; number of steps (run,)."""
     variance = np.diagonal(prior.covariance, 0, -2, -1)
-    for _ in range(rule.iterations - 1):
-        left = variance - (step.cross * step.gain).sum(-1)
-        sigma = np.sqrt(np.maximum(left, 1e-12 * np.abs(variance)))
-        moving = moving & (np.abs(step.correction - last) > rule.tolerance * sigma).any(-1)
-        if not moving.any():
-            break
+    anything = used.any(-1, keepdims=True)
+
+    def again(runs: IntArray) -> None:
         core, points = _moved(model, prior, step.correction)
-        linear = _linearise(model, core, points, sights, k, inflation)
+        linear = _linearise(model, core, points, observed, k, inflation)
         shift = (prior.points - points).reshape(len(core), -1)
         lag = np.concatenate([model.difference(prior.core, core), shift], axis=-1)
         residual = linear.innovation - (linear.response @ lag[..., None])[..., 0]
         new = _gauss_newton(prior, linear._replace(innovation=residual), used)
-        last = step.correction.copy()
-        for kept, values in zip(step, new):
-            kept[moving] = values[moving]
-        count += moving
-    return count
+        put(step, runs, take(new, runs))
+
+    def moved(before: Array) -> BoolArray:
+        left = variance - (step.cross * step.gain).sum(-1)
+        sigma = np.sqrt(np.maximum(left, 1e-12 * np.abs(variance)))
+        far = np.abs(step.correction - before) > settings.tolerance * sigma
+        return np.asarray((far & anything).any(-1))
+
+    return iterate(step.correction, again, moved, settings.iterations)
 
 
 def _linearise(
-    model: LandmarkModel, core: Array, points: Array, sights: Sights, k: int, inflation: float
+    model: LandmarkModel,
+    core: Array,
+    points: Array,
+    observed: Observations,
+    k: int,
+    inflation: float,
 ) -> _Linear:
     rows = model.rows(core[:, None], points[:, None], np.array([k]))
     runs, landmarks, each, n_c = *rows.shown[:, 0].shape, model.errors
@@ -133,8 +139,8 @@ def _linearise(
     response[:, count:, :n_c] = rows.common_by_core[:, 0]
     innovation = np.concatenate(
         [
-            (sights.shown - rows.shown[:, 0]).reshape(runs, count),
-            sights.common - rows.common[:, 0],
+            (observed.shown - rows.shown[:, 0]).reshape(runs, count),
+            observed.common - rows.common[:, 0],
         ],
         axis=-1,
     )
@@ -147,15 +153,19 @@ def _linearise(
 
 
 def _gated(
-    model: LandmarkModel, prior: Belief, sights: Sights, linear: _Linear, rule: Rule
+    model: LandmarkModel,
+    prior: Belief,
+    observed: Observations,
+    linear: _Linear,
+    settings: UpdateSettings,
 ) -> tuple[BoolArray, BoolArray]:
     """Components to use (run, m), and landmarks seen that passed (run, N)."""
-    runs, landmarks, each = sights.seen.shape
-    seen = np.concatenate([sights.seen.reshape(runs, -1), sights.common_seen], axis=-1)
-    shown: BoolArray = np.asarray(sights.seen.any(-1))
-    if rule.false_alarm is None:
+    runs, landmarks, each = observed.seen.shape
+    seen = np.concatenate([observed.seen.reshape(runs, -1), observed.common_seen], axis=-1)
+    shown: BoolArray = np.asarray(observed.seen.any(-1))
+    if settings.false_alarm is None:
         return seen, shown
-    limits = 2.0 * gammainccinv(0.5 * np.maximum(np.arange(max(each, 1) + 1), 1), rule.false_alarm)
+    limits = chi_square_limits(settings.false_alarm, each)
     near = _near(prior, linear, slice(landmarks * each, None), limits[1])
     used = seen.copy()
     used[:, landmarks * each :] &= near
@@ -163,16 +173,9 @@ def _gated(
         return used, shown
     first = np.arange(landmarks * each).reshape(landmarks, each)
     blocks = _blocks(model, prior, linear, first)
-    nu, _, blocks = drop_missing(
-        sights.seen,
-        linear.innovation[:, first],
-        linear.innovation[:, first][..., None, :],
-        blocks + linear.noise[:, first[:, :, None], first[:, None, :]],
-    )
-    squares = (
-        nu * solve(blocks.reshape(-1, each, each), nu.reshape(-1, each, 1)).reshape(nu.shape)
-    ).sum(-1)
-    accepted: BoolArray = shown & (squares <= limits[sights.seen.sum(-1)])
+    total = blocks + linear.noise[:, first[:, :, None], first[:, None, :]]
+    squares = group_squares(observed.seen, linear.innovation[:, first], total)
+    accepted: BoolArray = shown & (squares <= limits[observed.seen.sum(-1)])
     used[:, : landmarks * each] &= np.repeat(accepted, each, axis=-1)
     return used, accepted
 

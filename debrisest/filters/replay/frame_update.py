@@ -6,9 +6,9 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.filters import weights
-from debrisest.filters.replay.evidence import Evidence, normal_equations
-from debrisest.filters.replay.replay_model import ReplayModel
-from debrisest.filters.scaled import scaled_inverse, scaled_solve
+from debrisest.filters.linear_algebra import scaled_inverse, scaled_solve
+from debrisest.filters.replay.measured_arc import MeasuredArc, normal_equations
+from debrisest.filters.replay_model import ReplayModel
 
 FRAME_ITERATIONS = 3
 _FRAME_CONVERGED = 1e-3
@@ -25,7 +25,7 @@ class Frame(NamedTuple):
     """Figures of one epoch, (run,) each."""
 
     nis: Array
-    dof: IntArray
+    nis_dof: IntArray
     rejected: IntArray
 
 
@@ -39,36 +39,37 @@ def predict(model: ReplayModel, belief: Belief, k: int) -> Belief:
 
 
 def update(
-    model: ReplayModel, predicted: Belief, evidence: Evidence, k: int, iterations: int, gate: bool
+    model: ReplayModel, predicted: Belief, arc: MeasuredArc, k: int, iterations: int, gate: bool
 ) -> tuple[Belief, Frame]:
     """Iterated update with the measurements of epoch k, each run until it has converged.
 
-    With `gate`, the weights of the epoch's rejected rows are set to zero in `evidence`.
+    With `gate`, the weights of the epoch's rejected rows are set to zero in `arc`.
     """
     frame = slice(k, k + 1)
     state, information = predicted.state.copy(), predicted.information.copy()
     runs = np.arange(len(state))
     for iteration in range(iterations):
         at = state[runs]
-        states, sensitivity = model.trajectory(at, k, k)
-        shown, derivative = model.rows(states, sensitivity, k, np.array([k]))
-        back = model.inverse_chart(at)
+        part = model.of(runs)
+        states, sensitivity = part.trajectory(at, k, k)
+        shown, derivative = part.rows(states, sensitivity, k, np.array([k]))
+        back = part.inverse_chart(at)
         rows = derivative / model.sigma[:, None] @ back[:, None]
-        residual = evidence.measured[runs, frame] - shown / model.sigma
+        residual = arc.measured[runs, frame] - shown / model.sigma
         if gate and iteration == 0:
             spread = scaled_inverse(predicted.information)[:, None]
-            evidence.weight[:, frame] *= weights.innovation_gate(residual, rows, spread)
-        terms = normal_equations(rows, residual, evidence.weight[runs, frame])
+            arc.weight[:, frame] *= weights.innovation_gate(residual, rows, spread)
+        terms = normal_equations(rows, residual, arc.weight[runs, frame])
         total = predicted.information[runs] + terms[0]
-        offset = model.difference(predicted.state[runs], at)
+        offset = part.difference(predicted.state[runs], at)
         right = terms[1] + (predicted.information[runs] @ offset[..., None])[..., 0]
         step = scaled_solve(total, right)
         decrement = (step * right).sum(-1)
         if iteration == 0:
             nis = terms[2] - decrement
-        state[runs], information[runs] = model.retract(at, step), total
+        state[runs], information[runs] = part.retract(at, step), total
         runs = runs[~(decrement < _FRAME_CONVERGED)]
         if len(runs) == 0:
             break
-    used = (evidence.weight[:, k] > 0.0).sum(-1)
-    return Belief(state, information), Frame(nis, used, evidence.seen[:, k].sum(-1) - used)
+    used = (arc.weight[:, k] > 0.0).sum(-1)
+    return Belief(state, information), Frame(nis, used, arc.seen[:, k].sum(-1) - used)

@@ -4,10 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray
-from debrisest.filters.replay.evidence import Evidence, Linearization, linearize, put, take
-from debrisest.filters.replay.replay_model import ReplayModel
-from debrisest.filters.scaled import scaled_solve
+from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.descent import Damping, descend
+from debrisest.filters.linear_algebra import scaled_solve
+from debrisest.filters.replay.measured_arc import Linearization, MeasuredArc, linearize
+from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.runs import take
 
 CONVERGED = 1e-2
 """The predicted decrease of the cost below which the iteration ends."""
@@ -34,7 +36,7 @@ class Solution(NamedTuple):
 
 
 def gauss_newton(
-    model: ReplayModel, evidence: Evidence, state: Array, last: int, iterations: int
+    model: ReplayModel, arc: MeasuredArc, state: Array, last: int, iterations: int
 ) -> Solution:
     """Minimise the cost of epochs 0 to ``last`` from ``state (run, n)`` at epoch 0.
 
@@ -42,25 +44,16 @@ def gauss_newton(
     information (the information itself as a measure stalls in the long valleys of such costs).
     `iterations` counts linearisations; runs stop one by one.
     """
-    best = linearize(model, evidence, state, last)
-    damping = np.zeros(len(state))
-    step, decrement = _step(best, evidence.information, damping)
-    active = np.isfinite(best.cost) & ~(decrement < CONVERGED)
-    for _ in range(iterations - 1):
-        runs = np.flatnonzero(active)
-        if len(runs) == 0:
-            break
-        trial = linearize(
-            model, take(evidence, runs), move(model, best.state[runs], step[runs]), last
-        )
-        better = trial.cost <= best.cost[runs]
-        best = put(best, runs[better], take(trial, np.flatnonzero(better)))
-        damping[runs] = _next_damping(damping[runs], better)
-        step[runs], decrement[runs] = _step(
-            take(best, runs), evidence.information[runs], damping[runs]
-        )
-        active[runs] = ~(decrement[runs] < CONVERGED)
-    return Solution(best, step, decrement)
+
+    def step(at: Linearization, runs: IntArray, damping: Array) -> tuple[Array, Array]:
+        return _step(at, arc.information[runs], damping)
+
+    def trial(best: Linearization, runs: IntArray, step: Array) -> Linearization:
+        part = model.of(runs)
+        return linearize(part, take(arc, runs), move(part, best.state[runs], step), last)
+
+    first = linearize(model, arc, state, last)
+    return Solution(*descend(first, lambda at: at.cost, step, trial, _DAMPING, iterations))
 
 
 def move(model: ReplayModel, state: Array, step: Array) -> Array:
@@ -81,3 +74,6 @@ def _step(at: Linearization, prior: Array, damping: Array) -> tuple[Array, Array
 def _next_damping(damping: Array, better: BoolArray) -> Array:
     less = np.where(damping / 10.0 < _LEAST_DAMPING, 0.0, damping / 10.0)
     return np.where(better, less, np.maximum(_FIRST_DAMPING, 10.0 * damping))
+
+
+_DAMPING = Damping(0.0, _next_damping, lambda _, promise, __: promise < CONVERGED)

@@ -5,14 +5,12 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from debrisest.arrays import Array
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import associated, jointly_associated
-from debrisest.filters.association.weights import Misses, Validation
-from debrisest.filters.history import History
-from debrisest.parts.filters.filtered import filtered
+from debrisest.filters.association.weights import Validation, inverse_unit_ball, unit_ball
+from debrisest.filters.estimates import Estimates
+from debrisest.filters.scan_model import ScanModel
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
-from debrisest.roles import Filtered, FilterPart, Given, Positive
+from debrisest.roles import FilterPart, Given, Positive
 
 Probability = Annotated[float, Field(gt=0, le=1)]
 
@@ -25,14 +23,15 @@ class _Validating(FilterPart):
     gate: Positive = 9.21
     detection_probability: Probability = 0.99
     gate_probability: Probability | None = None
-    misses: Misses = "corrected"
+    gate_volume: Literal["unit_ball", "inverse_unit_ball"] = "unit_ball"
     stacked: bool = False
     keep_s: KeptTimes = []
 
     @property
     def validation(self) -> Validation:
         """What the numerics call these keys."""
-        return Validation(self.gate, self.detection_probability, self.misses, self.gate_probability)
+        ball = unit_ball if self.gate_volume == "unit_ball" else inverse_unit_ball
+        return Validation(self.gate, self.detection_probability, self.gate_probability, ball)
 
 
 class AssociationFilter(_Validating):
@@ -49,17 +48,17 @@ class AssociationFilter(_Validating):
             raise ValueError("relinearised_s goes with linearised: start")
         return self
 
-    def run(self, model: ScanModel, given: Given) -> Filtered:
+    def run(self, model: ScanModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
-        history = associated(
+        found = associated(
             *(model, given.state, given.covariance, given.measured, self.validation),
             method=self.method,
             stacked=self.stacked,
             relinearise=self._every(given.clock.step),
-            truth=_truth(given) if self.linearised == "truth" else None,
+            truth=given.known_truth if self.linearised == "truth" else None,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(history)
+        return _unlabelled(found)
 
     def _every(self, step: float) -> int:
         if self.linearised == "estimate":
@@ -72,14 +71,14 @@ class JointAssociation(_Validating):
 
     kind: Literal["joint_association"]
 
-    def run(self, model: ScanModel, given: Given) -> Filtered:
+    def run(self, model: ScanModel, given: Given) -> Estimates:
         """Return the estimates of the target; the state given is (run, track, n)."""
-        history = jointly_associated(
+        found = jointly_associated(
             *(model, given.state, given.covariance, given.measured, self.validation),
             stacked=self.stacked,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(history)
+        return _unlabelled(found)
 
 
 class KnownAssociation(FilterPart):
@@ -89,45 +88,23 @@ class KnownAssociation(FilterPart):
     kind: Literal["known_association"]
     keep_s: KeptTimes = []
 
-    def run(self, model: ScanModel, given: Given) -> Filtered:
+    def run(self, model: ScanModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
-        history = associated(
+        found = associated(
             *(model, given.state, given.covariance, given.measured, Validation()),
             method="known",
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return filtered(history)
+        return counting(found, "repairs")
 
 
-class LinearisedAtTruth(FilterPart):
-    """The posterior bound along each run (Tichavsky et al. 1998) as an estimator.
-
-    Known detections, linearised at the truth.
-    """
-
-    needs = ("scan_model",)
-    kind: Literal["linearised_at_truth"]
-    keep_s: KeptTimes = []
-
-    def run(self, model: ScanModel, given: Given) -> Filtered:
-        """Return the truth moved by the errors of the efficient estimator."""
-        history = associated(
-            *(model, given.state, given.covariance, given.measured, Validation()),
-            method="known",
-            truth=_truth(given),
-            keep=kept_epochs(self.keep_s, given.clock),
-        )
-        return filtered(history)
-
-
-def _truth(given: Given) -> Array:
-    if given.truth is None:
-        raise ValueError("this filter is linearised at the truth, which is not known here")
-    return given.truth
-
-
-def _unlabelled(history: History) -> Filtered:
+def _unlabelled(found: Estimates) -> Estimates:
     """Without NIS, which is not chi-square where detections are chosen by their distance."""
-    return filtered(history, validated=history.validated)._replace(
-        nis=np.full_like(history.nis, np.nan), nis_dof=np.zeros_like(history.nis_dof)
+    return counting(found, "repairs", "validated")._replace(
+        nis=np.full_like(found.nis, np.nan), nis_dof=np.zeros_like(found.nis_dof)
     )
+
+
+def counting(found: Estimates, *names: str) -> Estimates:
+    """Return them with these of their counts only."""
+    return found._replace(counts={name: found.counts[name] for name in names})

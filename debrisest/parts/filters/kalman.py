@@ -5,12 +5,12 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from debrisest.clock import Clock
-from debrisest.filters.extended import extended
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.gate import Gate
+from debrisest.filters.kalman.extended import extended
+from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
-from debrisest.filters.unscented import UnscentedParameters, unscented
-from debrisest.parts.filters.filtered import filtered
-from debrisest.roles import Filtered, FilterPart, Given, NonNegative, Positive
+from debrisest.roles import FilterPart, Given, NonNegative, Positive
 
 KeptTimes = Annotated[
     list[NonNegative],
@@ -35,10 +35,10 @@ class Unscented(FilterPart):
     redraw: bool = False
     keep_s: KeptTimes = []
 
-    def run(self, model: Model, given: Given) -> Filtered:
+    def run(self, model: Model, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
         spread = UnscentedParameters(self.alpha, self.beta, self.kappa)
-        history = unscented(
+        return unscented(
             model,
             given.state,
             given.covariance,
@@ -47,7 +47,6 @@ class Unscented(FilterPart):
             keep=kept_epochs(self.keep_s, given.clock),
             redraw=self.redraw,
         )
-        return filtered(history)
 
 
 class Extended(FilterPart):
@@ -61,9 +60,9 @@ class Extended(FilterPart):
     gate: bool = False
     keep_s: KeptTimes = []
 
-    def run(self, model: Model, given: Given) -> Filtered:
+    def run(self, model: Model, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
-        history = extended(
+        return extended(
             model,
             given.state,
             given.covariance,
@@ -74,4 +73,3 @@ class Extended(FilterPart):
             keep=kept_epochs(self.keep_s, given.clock),
             gate=Gate() if self.gate else None,
         )
-        return filtered(history, self.gate, updates=history.iterations)

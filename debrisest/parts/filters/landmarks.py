@@ -8,18 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from debrisest.arrays import Array, Data
-from debrisest.assessment.landmark_bound import landmark_bound
 from debrisest.clock import Clock
+from debrisest.filters.estimates import Estimates
+from debrisest.filters.landmark_model import LandmarkModel, core_of, split
 from debrisest.filters.landmarks.batch_start import Batch, Started, StartStatus, batch_start
 from debrisest.filters.landmarks.growing_windows import Window
-from debrisest.filters.landmarks.landmark_filter import Annealing, Landmarked, landmark_filter
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, joined, points_of, split
-from debrisest.filters.landmarks.update import Belief, Rule
-from debrisest.filters.replay.estimates import ReplayStatus
+from debrisest.filters.landmarks.landmark_filter import Annealing, landmark_filter
+from debrisest.filters.landmarks.update import Belief, UpdateSettings
+from debrisest.filters.status import ReplayStatus
 from debrisest.outcome import sentences
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
-from debrisest.roles import Filtered, FilterPart, Given, NonNegative, Positive
+from debrisest.roles import FilterPart, Given, NonNegative, Positive
 
 GATE = 1e-3
 """False alarms of the gate: 13.8 for a point's two pixels."""
@@ -40,8 +39,8 @@ class _LandmarkFilter(FilterPart):
     gate: bool = True
     keep_s: KeptTimes = []
 
-    def _rule(self) -> Rule:
-        return Rule(iterations=self.iterations, false_alarm=GATE if self.gate else None)
+    def _settings(self) -> UpdateSettings:
+        return UpdateSettings(iterations=self.iterations, false_alarm=GATE if self.gate else None)
 
 
 class LandmarkBatch(_LandmarkFilter):
@@ -88,14 +87,14 @@ class LandmarkBatch(_LandmarkFilter):
     def _extensions(self) -> list[tuple[float, float]]:
         return [(end, self.extended_spacing_s) for end in self.extended_s]
 
-    def run(self, model: LandmarkModel, given: Given) -> Filtered:
+    def run(self, model: LandmarkModel, given: Given) -> Estimates:
         """Return the estimates of all epochs; up to the batch's end they are the batch's own."""
-        sights, held = split(model, given.measured), model.held
+        observed, held = split(model, given.measured), model.held
         with np.errstate(all="ignore"):
             started = batch_start(
                 model,
-                sights,
-                model.parameters(_core(model, given.state)),
+                observed,
+                model.parameters(core_of(model, given.state)),
                 given.covariance[:, held:, held:],
                 self._batch(given.clock),
             )
@@ -104,12 +103,12 @@ class LandmarkBatch(_LandmarkFilter):
             Belief(started.core, started.points, started.covariance),
             started.present,
             started.last,
-            sights,
-            self._rule(),
+            observed,
+            self._settings(),
             keep=kept_epochs(self.keep_s, given.clock),
         )
         counts = {"restarts": started.restarts, "fit": started.ratio}
-        return _filtered(found, _status(found, started), counts)
+        return found._replace(status=_status(found, started), counts=found.counts | counts)
 
     def _batch(self, clock: Clock) -> Batch:
         return Batch(
@@ -129,67 +128,27 @@ class LandmarkFilter(_LandmarkFilter):
     annealing: NonNegative = Field(100.0, description="noise variance times 1 + this at time zero")
     annealing_s: Positive = Field(100.0, description="time in which that falls by a factor e")
 
-    def run(self, model: LandmarkModel, given: Given) -> Filtered:
+    def run(self, model: LandmarkModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
-        sights, held = split(model, given.measured), model.held
-        core, freedom = model.start(model.parameters(_core(model, given.state)))
+        observed, held = split(model, given.measured), model.held
+        core, by_parameters = model.start(model.parameters(core_of(model, given.state)))
         runs, n_e = given.covariance.shape[:2]
         n_c = model.errors
         covariance = np.zeros((runs, n_e, n_e))
         inner = given.covariance[:, held:n_c, held:n_c]
-        covariance[:, :n_c, :n_c] = freedom @ inner @ np.swapaxes(freedom, -1, -2)
+        covariance[:, :n_c, :n_c] = by_parameters @ inner @ np.swapaxes(by_parameters, -1, -2)
         covariance[:, :held, :held] += given.covariance[:, :held, :held]
         found = landmark_filter(
             model,
             Belief(core, np.zeros((runs, model.landmarks, 3)), covariance),
             np.zeros((runs, model.landmarks), dtype=np.bool_),
             np.full(runs, -1),
-            sights,
-            self._rule(),
+            observed,
+            self._settings(),
             Annealing(self.annealing, self.annealing_s / given.clock.step),
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _filtered(found, _status(found, None), {})
-
-
-class LandmarkBound(FilterPart):
-    """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
-
-    needs = ("landmark_model",)
-    kind: Literal["landmark_bound"]
-    keep_s: KeptTimes = []
-
-    def run(self, model: LandmarkModel, given: Given) -> Filtered:
-        """Return the truth moved by the errors of the efficient estimator."""
-        if given.truth is None:
-            raise ValueError("the bound is linearised at the truth, which is not known here")
-        runs, epochs = given.measured.shape[:2]
-        kept = sorted({*kept_epochs(self.keep_s, given.clock), epochs - 1})
-        core, points = _core(model, given.truth), points_of(model, given.truth)
-        held, n_c = model.held, model.errors
-        bound = landmark_bound(
-            model,
-            core[:, 0],
-            points[:, 0],
-            model.parameters(_core(model, given.state)),
-            given.covariance[:, held:, held:],
-            split(model, given.measured),
-            kept,
-        )
-        moved = points + bound.error[..., n_c:].reshape(points.shape)
-        return Filtered(
-            state=joined(model.retract(core, bound.error[..., :n_c]), moved),
-            sigma=bound.sigma,
-            covariance=bound.covariance,
-            kept=np.array(kept, dtype=np.int64),
-            nis=np.full((runs, epochs), np.nan),
-            nis_dof=np.zeros((runs, epochs), dtype=np.int64),
-            status=np.array(["linearised at the truth"] * runs),
-        )
-
-
-def _core(model: LandmarkModel, state: Array) -> Array:
-    return state[..., : state.shape[-1] - 3 * model.landmarks]
+        return found._replace(status=_status(found, None))
 
 
 def _windows(ends: Iterable[tuple[float, float]], clock: Clock) -> list[Window]:
@@ -202,25 +161,13 @@ def _windows(ends: Iterable[tuple[float, float]], clock: Clock) -> list[Window]:
     return list(dict.fromkeys(windows))
 
 
-def _status(found: Landmarked, started: Started | None) -> NDArray[np.str_]:
+def _status(found: Estimates, started: Started | None) -> NDArray[np.str_]:
     """How each run ended: the filter's trouble first, then the start's, then suspicions."""
-    result = found.estimates
-    half = result.nis.shape[1] // 2
-    freedom = result.nis_dof[:, half:].sum(1)
-    mean = np.nansum(result.nis[:, half:], axis=1) / np.maximum(freedom, 1)
+    half = found.nis.shape[1] // 2
+    dof = found.nis_dof[:, half:].sum(1)
+    mean = np.nansum(found.nis[:, half:], axis=1) / np.maximum(dof, 1)
     words = np.where(mean > _SUSPICIOUS, _SUSPECT, StartStatus.FOUND.sentence)
     if started is not None:
         troubled = started.status != StartStatus.FOUND
         words = np.where(troubled, sentences(started.status, StartStatus), words)
-    lost = result.status != ReplayStatus.CONVERGED
-    return np.where(lost, sentences(result.status, ReplayStatus), words)
-
-
-def _filtered(found: Landmarked, status: NDArray[np.str_], counts: Data) -> Filtered:
-    result = found.estimates
-    return Filtered(
-        *(result.state, result.sigma, result.covariance, result.kept, result.nis, result.nis_dof),
-        status=status,
-        counts=counts
-        | {"dropped": found.dropped, "updates": found.iterations, "rejected": result.rejected},
-    )
+    return np.where(found.status == ReplayStatus.CONVERGED.sentence, words, found.status)

@@ -2,17 +2,14 @@
 
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Field
 
-from debrisest.arrays import Data
-from debrisest.assessment.bound import paired_errors
-from debrisest.filters.replay.estimates import ReplayStatus
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.replay.replay import RATIO, replay, smooth
-from debrisest.filters.replay.replay_model import ReplayModel
-from debrisest.outcome import sentences
+from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.status import ReplayStatus
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
-from debrisest.roles import Filtered, FilterPart, Given
+from debrisest.roles import FilterPart, Given
 
 
 class Replay(FilterPart):
@@ -26,52 +23,13 @@ class Replay(FilterPart):
     ratio: Annotated[float, Field(ge=1)] = RATIO
     keep_s: KeptTimes = []
 
-    def run(self, model: ReplayModel, given: Given) -> Filtered:
+    def run(self, model: ReplayModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
         known = given.state, given.covariance, given.measured
         keep = kept_epochs(self.keep_s, given.clock)
-        beside = None if given.truth is None else given.truth[:, 0]
-        found = replay(model, *known, ratio=self.ratio, gate=self.gate, keep=keep, beside=beside)
-        counts: Data = {"rejected": found.rejected} if self.gate else {}
+        truth = None if given.truth is None else given.truth[:, 0]
+        found = replay(model, *known, ratio=self.ratio, gate=self.gate, keep=keep, reference=truth)
         if self.smoother:
-            found = smooth(model, *known, found, gate=self.gate, keep=keep, beside=beside)
-        counts |= {"cost": found.cost}
-        if beside is not None:
-            counts |= {"cost_of_truth": found.cost_beside}
-        return Filtered(
-            *(found.state, found.sigma, found.covariance, found.kept, found.nis, found.nis_dof),
-            status=sentences(found.status, ReplayStatus),
-            counts=counts | {"converged": found.status == ReplayStatus.CONVERGED},
-        )
-
-
-class Efficient(FilterPart):
-    """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
-
-    needs = ("replay_model",)
-    kind: Literal["efficient"]
-    smoother: bool = False
-    keep_s: KeptTimes = []
-
-    def run(self, model: ReplayModel, given: Given) -> Filtered:
-        """Return the truth moved by the errors of the efficient estimator."""
-        if given.truth is None:
-            raise ValueError("the bound is linearised at the truth, which is not known here")
-        runs, epochs = given.measured.shape[:2]
-        kept = sorted({*kept_epochs(self.keep_s, given.clock), epochs - 1})
-        errors = paired_errors(
-            model, given.truth[:, 0], given.state, given.covariance[0], given.measured, kept
-        )
-        error, sigma, covariance = errors[3:] if self.smoother else errors[:3]
-        chart = model.chart(given.truth)
-        state = model.displace(given.truth, (chart @ error[..., None])[..., 0])
-        to_state = model.inverse_chart(state[:, kept]) @ chart[:, kept]
-        return Filtered(
-            state=state,
-            sigma=sigma,
-            covariance=to_state @ covariance @ np.swapaxes(to_state, -1, -2),
-            kept=np.array(kept, dtype=np.int64),
-            nis=np.full((runs, epochs), np.nan),
-            nis_dof=np.zeros((runs, epochs), dtype=np.int64),
-            status=np.array(["linearised at the truth"] * runs),
-        )
+            found = smooth(model, *known, found, gate=self.gate, keep=keep, reference=truth)
+        converged = found.status == ReplayStatus.CONVERGED.sentence
+        return found._replace(counts=found.counts | {"converged": converged})

@@ -14,7 +14,8 @@ from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.dynamics import log_inertia
 from debrisest.dynamics.clohessy_wiltshire import mean_motion_of
-from debrisest.filters.landmarks.landmark_model import LandmarkModel
+from debrisest.filters.estimates import Estimates
+from debrisest.filters.landmark_model import LandmarkModel
 from debrisest.problems.camera_range.data import require_measurable
 from debrisest.problems.camera_range.model import (
     CORE,
@@ -28,18 +29,18 @@ from debrisest.problems.camera_range.model import (
     VELOCITY,
     VELOCITY_ERROR,
     CameraAttitude,
+    CameraRangeGeometry,
     Q,
     RangeModel,
-    Setup,
 )
+from debrisest.problems.camera_range.projection import landmark_model
 from debrisest.problems.camera_range.score import scores
-from debrisest.problems.camera_range.sights import landmark_model
-from debrisest.roles import Filtered, NonNegative, Positive, ProblemPart, Window
+from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 from debrisest.target.start_frame import in_start_frame
 
 _SCORED = np.r_[RATE_ERROR, POSITION_ERROR, VELOCITY_ERROR, LOG_INERTIA_ERROR]
-_TOLD = ("restarts", "dropped", "fit")
-"""What filters tell of whole runs, for the tables."""
+_COUNTED = ("restarts", "dropped", "fit")
+"""What filters count over whole runs, for the tables."""
 _PLACES = {
     "rate_b": (RATE, RATE_ERROR),
     "relative_position_h": (POSITION, POSITION_ERROR),
@@ -100,11 +101,11 @@ class CameraRangeMinimal(ProblemPart):
         return np.concatenate([pixels, ranges[..., None]], axis=-1).reshape(*epochs, -1)
 
     def model(self, data: Data, clock: Clock) -> LandmarkModel:
-        """Return motion and sights of one clock step."""
+        """Return motion and measurements of one clock step."""
         start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
         white = float(data["attitude_noise"][0]) if self.camera_attitude == "known" else 0.0
         return landmark_model(
-            Setup(
+            CameraRangeGeometry(
                 camera=quaternion.to_matrix(data["known_q_hc"]),
                 points=data["image_point"].shape[2],
                 mean_motion=mean_motion_of(*start),
@@ -142,7 +143,7 @@ class CameraRangeMinimal(ProblemPart):
         sigma[:, CORE_ERRORS + len(extras) :] = self.point_sigma_m
         return state, sigma[..., None] ** 2 * np.eye(sigma.shape[-1])
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma; landmarks may be absent."""
         state, sigma, extras = filtered.state, filtered.sigma, len(self._extras()[0])
         result: Data = {"q_hb": state[..., Q], "q_hb_sigma": _component_sigma(state, sigma)}
@@ -162,9 +163,9 @@ class CameraRangeMinimal(ProblemPart):
 
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors against the truth, as they are and gauge-free, and consistency."""
-        told = {name: data[name] for name in _TOLD if name in data}
+        counted = {name: data[name] for name in _COUNTED if name in data}
         q_hc = self._start_camera(data) if "true_q_hc" in data else np.empty(0)
-        return told | scores(data, q_hc, _SCORED, self.log_inertia_sigma)
+        return counted | scores(data, q_hc, _SCORED, self.log_inertia_sigma)
 
     def truth(self, data: Data) -> Array | None:
         """Return the true states (run, time, n), where they are known."""

@@ -40,7 +40,7 @@ _TURNING = np.r_[0:6, 12:17]
 """Errors that the rotation depends on."""
 
 
-class Setup(NamedTuple):
+class CameraRangeGeometry(NamedTuple):
     """What is known without error."""
 
     camera: Array
@@ -69,12 +69,12 @@ class Setup(NamedTuple):
         """Number of constants behind the inertia: the range's bias, the camera's three."""
         return int(self.range_model == "bias") + 3 * int(self.camera_bias)
 
-    def of(self, runs: IntArray) -> "Setup":
-        """Return the setup of some runs."""
+    def of(self, runs: IntArray) -> "CameraRangeGeometry":
+        """Return what is known of some runs."""
         return self._replace(camera=self.camera[runs])
 
 
-def error_names(known: Setup) -> tuple[str, ...]:
+def error_names(known: CameraRangeGeometry) -> tuple[str, ...]:
     """Return the names of all errors, points last."""
     names = [
         f"{part}_{axis}" for part in ("attitude", "rate", "position", "velocity") for axis in "xyz"
@@ -85,7 +85,7 @@ def error_names(known: Setup) -> tuple[str, ...]:
     return (*names, *(f"p{i + 1}_{axis}" for i in range(known.points) for axis in "xyz"))
 
 
-def start(known: Setup, parameters: Array) -> tuple[Array, Array]:
+def start(known: CameraRangeGeometry, parameters: Array) -> tuple[Array, Array]:
     """Core ``(run, n)`` whose body axes are the camera's, and derivative of its errors.
 
     They are those of the camera as it is known, exactly so, whatever the error of this knowledge.
@@ -126,7 +126,7 @@ _CROSS_TERMS = [LOG_INERTIA.start - 4 + 3, LOG_INERTIA.start - 4 + 4]
 """Inertia's xz and yz among the parameters."""
 
 
-def trajectory(known: Setup, core: Array, last: int) -> tuple[Array, Array]:
+def trajectory(known: CameraRangeGeometry, core: Array, last: int) -> tuple[Array, Array]:
     """Cores ``(run, last + 1, n)`` from that of epoch 0, and errors by those of epoch 0."""
     shape = tumbling_in_orbit.body(core[..., LOG_INERTIA])
     q, w, n = core[..., Q], core[..., RATE], known.mean_motion
@@ -153,7 +153,7 @@ def trajectory(known: Setup, core: Array, last: int) -> tuple[Array, Array]:
     return cores, _transitions(known, _composed(steps), centre)
 
 
-def process(known: Setup, core: Array) -> tuple[Array, Array]:
+def process(known: CameraRangeGeometry, core: Array) -> tuple[Array, Array]:
     """Core ``(run, n)`` one step later, and the derivative ``(run, n_c, n_c)`` of its errors."""
     shape = tumbling_in_orbit.body(core[..., LOG_INERTIA])
     n, step = known.mean_motion, known.step
@@ -178,7 +178,7 @@ def _composed(steps: Array) -> Array:
     return result
 
 
-def _transitions(known: Setup, turning: Array, centre: Array) -> Array:
+def _transitions(known: CameraRangeGeometry, turning: Array, centre: Array) -> Array:
     """Derivative ``(..., n_c, n_c)`` of rotation ``(..., 6, 11)`` and centre ``(..., 6, 6)``."""
     n_c = CORE_ERRORS + known.extras
     result = np.zeros((*turning.shape[:-2], n_c, n_c))

@@ -7,6 +7,7 @@ import numpy as np
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.dynamics.clohessy_wiltshire import mean_motion_of
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.model import Model
 from debrisest.problems.camera_range.data import require_measurable
 from debrisest.problems.camera_range.redundant_model import (
@@ -17,12 +18,12 @@ from debrisest.problems.camera_range.redundant_model import (
     POSITION,
     RATE,
     VELOCITY,
+    CameraGeometry,
     Q,
-    Setup,
     redundant_model,
 )
 from debrisest.problems.camera_range.score import scores
-from debrisest.roles import Filtered, ProblemPart, Window
+from debrisest.roles import ProblemPart, Window
 
 _ROWS = np.array([*range(4, 13)])
 """Rate, position and velocity in the covariance."""
@@ -49,7 +50,9 @@ class CameraRangeRedundant(ProblemPart):
         """Return process and measurement of one clock step."""
         start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
         points = data["image_point"].shape[2]
-        known = Setup(points, mean_motion_of(*start), clock.step, float(data["focal_px"][0]))
+        known = CameraGeometry(
+            points, mean_motion_of(*start), clock.step, float(data["focal_px"][0])
+        )
         return redundant_model(
             known, float(data["image_noise_px"][0]), float(data["range_noise"][0])
         )
@@ -59,7 +62,7 @@ class CameraRangeRedundant(ProblemPart):
         sigma = _state({name: guess[f"{name}_sigma"] for name in _NAMES})
         return _state(guess), sigma[..., None] ** 2 * np.eye(sigma.shape[-1])
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
         sigma = {f"{name}_sigma": part for name, part in _parts(filtered.sigma).items()}
         return _parts(filtered.state) | sigma

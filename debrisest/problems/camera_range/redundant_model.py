@@ -32,7 +32,7 @@ MATRIX = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])
 """Where the elements lie in the tensor."""
 
 
-class Setup(NamedTuple):
+class CameraGeometry(NamedTuple):
     """What is known without error."""
 
     points: int
@@ -51,7 +51,7 @@ class Setup(NamedTuple):
         return slice(CORE + 3 * self.points, CORE + 6 * self.points)
 
 
-def redundant_model(known: Setup, image_noise_px: float, range_noise: float) -> Model:
+def redundant_model(known: CameraGeometry, image_noise_px: float, range_noise: float) -> Model:
     """Return the model; process noise is zero, the motion is exact (Sec. 7.1 of the paper)."""
     size = CORE + 6 * known.points
     noise = np.append(np.full(2 * known.points, image_noise_px**2), range_noise**2)
@@ -73,7 +73,7 @@ def error_names(points: int) -> tuple[str, ...]:
     return (*core, *named)
 
 
-def measurement(known: Setup, state: Array) -> Array:
+def measurement(known: CameraGeometry, state: Array) -> Array:
     """Pixels point by point, then the range to the centre of mass ``(..., 2N + 1)`` (Eq 23)."""
     batch = state.shape[:-1]
     seen = state[..., known.camera_points].reshape(*batch, known.points, 3)
@@ -81,7 +81,7 @@ def measurement(known: Setup, state: Array) -> Array:
     return np.concatenate([pixels, _length(state[..., POSITION])], axis=-1)
 
 
-def process(known: Setup, state: Array) -> Array:
+def process(known: CameraGeometry, state: Array) -> Array:
     """State ``(run, ..., n)`` one step later.
 
     Of sigma points, those with the core of the first one are moved by that one's motion.
@@ -97,7 +97,7 @@ def process(known: Setup, state: Array) -> Array:
     return result
 
 
-def _moved(known: Setup, leader: Array, state: Array) -> Array:
+def _moved(known: CameraGeometry, leader: Array, state: Array) -> Array:
     """States ``(..., copy, n)`` moved with the core of their ``leader (..., 1, n)``."""
     core, before, after = _core_step(known, leader)
     result = state.copy()
@@ -111,7 +111,7 @@ def _moved(known: Setup, leader: Array, state: Array) -> Array:
     return result
 
 
-def _core_step(known: Setup, leader: Array) -> tuple[Array, Array, Array]:
+def _core_step(known: CameraGeometry, leader: Array) -> tuple[Array, Array, Array]:
     """The core one step later, and the attitude ``q_cb`` before and after it."""
     before = leader[..., Q] / _length(leader[..., Q])
     orbit = leader[..., 7:13] @ transition(known.mean_motion, known.step).T

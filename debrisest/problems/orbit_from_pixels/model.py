@@ -15,17 +15,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import perturbed_orbit
-from debrisest.filters.association.scan_model import ScanModel
+from debrisest.filters.scan_model import ScanModel
 from debrisest.sensors import pinhole
 
 ORBIT = slice(0, 6)
 
 
-class Setup(NamedTuple):
+class ObserverGeometry(NamedTuple):
     """What the estimator knows beside the detections."""
 
     step: float
@@ -40,8 +40,16 @@ class Setup(NamedTuple):
     pixel_variance: float
     with_bias: bool
 
+    def of(self, runs: IntArray) -> "ObserverGeometry":
+        """Return what is known of some runs."""
+        return self._replace(
+            observer=self.observer[:, runs],
+            to_camera=self.to_camera[:, runs],
+            scale=self.scale[runs],
+        )
 
-def scan_model(known: Setup) -> ScanModel:
+
+def scan_model(known: ObserverGeometry) -> ScanModel:
     """Return the model of one clock step."""
     observers = known.observer.shape[2]
     names = [f"{part}_{axis}" for part in ("position", "velocity") for axis in "xyz"]
@@ -55,16 +63,17 @@ def scan_model(known: Setup) -> ScanModel:
         points_jacobian=lambda state, k: points_jacobian(known, state, k),
         noise=known.pixel_variance * np.eye(2),
         error_names=tuple(names),
+        select=lambda runs: scan_model(known.of(runs)),
     )
 
 
-def process(known: Setup, state: Array) -> Array:
+def process(known: ObserverGeometry, state: Array) -> Array:
     """Return the states (run, ..., n) a step later; biases stay."""
     orbit = perturbed_orbit.advance(state[..., ORBIT], known.step)
     return np.concatenate([orbit, state[..., 6:]], axis=-1)
 
 
-def process_jacobian(known: Setup, state: Array) -> Array:
+def process_jacobian(known: ObserverGeometry, state: Array) -> Array:
     """Return the derivative (run, ..., n, n) of `process`."""
     moved = perturbed_orbit.transition(state[..., ORBIT], known.step)
     if not known.with_bias:
@@ -76,7 +85,7 @@ def process_jacobian(known: Setup, state: Array) -> Array:
     return result
 
 
-def process_noise(known: Setup, n: int) -> Array:
+def process_noise(known: ObserverGeometry, n: int) -> Array:
     """Return the covariance (n, n), of rank 3, that an acceleration adds which lasts a step."""
     by_acceleration = np.zeros((n, 3))
     by_acceleration[:3] = 0.5 * known.step**2 * np.eye(3)
@@ -84,12 +93,12 @@ def process_noise(known: Setup, n: int) -> Array:
     return np.asarray(known.acceleration_noise**2 * by_acceleration @ by_acceleration.T)
 
 
-def points(known: Setup, state: Array, k: int) -> Array:
+def points(known: ObserverGeometry, state: Array, k: int) -> Array:
     """Return the pixels (run, ..., observer, 2), NaN of what is not in front of the camera."""
     return _pixels(known, _in_camera(known, state, k))
 
 
-def points_jacobian(known: Setup, state: Array, k: int) -> Array:
+def points_jacobian(known: ObserverGeometry, state: Array, k: int) -> Array:
     """Return the derivative (run, ..., observer, 2, n) of `points`."""
     point = _in_camera(known, state, k)
     by_point = pinhole.derivative(point, _like(known.scale[:, None], state))
@@ -106,7 +115,7 @@ def points_jacobian(known: Setup, state: Array, k: int) -> Array:
     return result
 
 
-def _in_camera(known: Setup, state: Array, k: int) -> Array:
+def _in_camera(known: ObserverGeometry, state: Array, k: int) -> Array:
     """Debris (run, ..., observer, 3) in camera axes."""
     away = state[..., None, :3] - _like(known.observer[k], state)
     point = (_like(known.to_camera[k], state) @ away[..., None])[..., 0]
@@ -115,12 +124,12 @@ def _in_camera(known: Setup, state: Array, k: int) -> Array:
     )
 
 
-def _pixels(known: Setup, point: Array) -> Array:
+def _pixels(known: ObserverGeometry, point: Array) -> Array:
     scale = known.scale.reshape(-1, *[1] * (point.ndim - 2))
     return np.where(point[..., 2:] > 0.0, pinhole.project(point, scale), np.nan)
 
 
-def _bias(known: Setup, state: Array) -> Array:
+def _bias(known: ObserverGeometry, state: Array) -> Array:
     """Biases (run, ..., observer, 3)."""
     return state[..., 6:].reshape(*state.shape[:-1], known.observer.shape[2], 3)
 

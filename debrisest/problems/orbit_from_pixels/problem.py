@@ -8,11 +8,12 @@ from pydantic import Field, model_validator
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
-from debrisest.filters.association.scan_model import ScanModel
 from debrisest.filters.association.single import labelled
-from debrisest.problems.orbit_from_pixels.model import ORBIT, Setup, scan_model
+from debrisest.filters.estimates import Estimates
+from debrisest.filters.scan_model import ScanModel
+from debrisest.problems.orbit_from_pixels.model import ORBIT, ObserverGeometry, scan_model
 from debrisest.problems.orbit_from_pixels.score import scores, true_bias
-from debrisest.roles import Filtered, NonNegative, Positive, ProblemPart, Window
+from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 
 
 class OrbitFromPixels(ProblemPart):
@@ -51,7 +52,7 @@ class OrbitFromPixels(ProblemPart):
         """Return process and measurement of one clock step."""
         to_camera = quaternion.to_matrix(quaternion.conjugate(data["known_q_ic"]))
         return scan_model(
-            Setup(
+            ObserverGeometry(
                 step=clock.step,
                 observer=_time_first(data["observer_position"]),
                 to_camera=_time_first(to_camera),
@@ -73,7 +74,7 @@ class OrbitFromPixels(ProblemPart):
         bias = guess["attitude_bias"].reshape(len(state), -1)
         return _with_bias(state, covariance, bias, variance["attitude_bias"])
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
         result: Data = {}
         for values, end in ((filtered.state, ""), (filtered.sigma, "_sigma")):

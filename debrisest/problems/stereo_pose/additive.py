@@ -28,7 +28,7 @@ from debrisest.problems.stereo_pose.model import (
     VELOCITY,
     K,
     Q,
-    Setup,
+    StereoGeometry,
     error_names,
     measurement,
     points_in_view,
@@ -41,7 +41,7 @@ _MOVING = 15
 
 
 def additive_model(
-    known: Setup, process_noise: Array, measurement_noise: Array, exact: bool = True
+    known: StereoGeometry, process_noise: Array, measurement_noise: Array, exact: bool = True
 ) -> Model:
     """Return the model, with covariances ``(n, n)`` per step and ``(m, m)``.
 
@@ -66,7 +66,7 @@ def _correct(state: Array, error: Array) -> Array:
     return corrected
 
 
-def process_jacobian(known: Setup, state: Array, k: int) -> Array:
+def process_jacobian(known: StereoGeometry, state: Array, k: int) -> Array:
     """Derivative ``(..., n, n)`` of `process`, exact for the discrete step.
 
     By complex steps of the 15 components that move or are constants of the motion, in one call.
@@ -74,7 +74,7 @@ def process_jacobian(known: Setup, state: Array, k: int) -> Array:
     return _moving_block(state, lambda copies: process(known, copies, k))
 
 
-def first_order_transition(known: Setup, state: Array, k: int) -> Array:
+def first_order_transition(known: StereoGeometry, state: Array, k: int) -> Array:
     """``I + F dt (..., n, n)`` as printed (Eq 46), F the derivative of the equations of motion."""
     leader = known.leader.at(2 * k)
 
@@ -96,7 +96,7 @@ def first_order_transition(known: Setup, state: Array, k: int) -> Array:
     return _moving_block(state, motion)
 
 
-def measurement_jacobian(known: Setup, state: Array, k: int) -> Array:
+def measurement_jacobian(known: StereoGeometry, state: Array, k: int) -> Array:
     """Derivative ``(..., m, n)`` of `measurement`: cameras in closed form, the rest by chain."""
     raw, batch, n = known.raw_rotation, state.shape[:-1], state.shape[-1]
     point, velocity = points_in_view(state, known.points, raw)
@@ -132,7 +132,7 @@ def _moving_block(state: Array, function: Callable[[NDArray[Any]], NDArray[Any]]
     return result
 
 
-def _acceleration_jacobian(known: Setup, state: Array, k: int) -> Array:
+def _acceleration_jacobian(known: StereoGeometry, state: Array, k: int) -> Array:
     raw, q, ratios = known.raw_rotation, state[..., Q], state[..., K]
     total = state[..., RATE] + np.array([0.0, 0.0, float(known.leader.rate[2 * k])])
     rate_t = unrotate(q, total, raw)

@@ -19,7 +19,15 @@ from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import translation_step
 from debrisest.dynamics.relative_rotation import rotation_step
-from debrisest.problems.stereo_pose.model import POINTS, POSITION, RATE, VELOCITY, K, Q, Setup
+from debrisest.problems.stereo_pose.model import (
+    POINTS,
+    POSITION,
+    RATE,
+    VELOCITY,
+    K,
+    Q,
+    StereoGeometry,
+)
 
 ATTITUDE_ERROR, K_ERROR, POINT_ERROR = slice(9, 12), slice(12, 14), slice(14, None)
 _COMPLEX_STEP = 1e-30
@@ -103,7 +111,7 @@ def plain_difference(state: Array, reference: Array) -> Array:
     )
 
 
-def propagate(known: Setup, state: Array, first: int, last: int) -> tuple[Array, Array]:
+def propagate(known: StereoGeometry, state: Array, first: int, last: int) -> tuple[Array, Array]:
     """States ``(run, epoch, n)`` of the epochs ``first`` to ``last``, with their sensitivities.
 
     ``last`` may come before ``first``. Sensitivities ``(run, epoch, 6, 8)`` are those of rate and
@@ -128,7 +136,7 @@ def propagate(known: Setup, state: Array, first: int, last: int) -> tuple[Array,
     return states, turning
 
 
-def rewind(known: Setup, state: Array, epoch: int) -> Array:
+def rewind(known: StereoGeometry, state: Array, epoch: int) -> Array:
     """State ``(run, n)`` at epoch 0 of the motion that passes through ``state`` at ``epoch``."""
     result, slope = state.copy(), inertia_ratios.slopes(state[:, K])
     for k in range(epoch, 0, -1):

@@ -14,9 +14,9 @@ from debrisest.problems.stereo_pose.model import (
     VELOCITY,
     K,
     Q,
-    Setup,
     Shown,
-    setup,
+    StereoGeometry,
+    stereo_geometry,
 )
 from debrisest.sensors import stereo
 
@@ -52,9 +52,11 @@ def shown_of(data: Data, measures: list[Measure] | None) -> Shown:
     return Shown(**{name: name in (measures or measured) for name in _DATASETS})
 
 
-def setup_of(data: Data, clock: Clock, measures: list[Measure] | None, raw: bool = False) -> Setup:
+def geometry_of(
+    data: Data, clock: Clock, measures: list[Measure] | None, raw: bool = False
+) -> StereoGeometry:
     """Return what is known without error: the leader's orbit, the cameras, the time step."""
-    return setup(
+    return stereo_geometry(
         len(clock.times),
         clock.step,
         *kepler.shape_and_anomaly(data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]),
@@ -82,7 +84,7 @@ def measured_of(data: Data, shown: Shown) -> Array:
     return np.concatenate(flat, axis=-1)
 
 
-def noise_of(data: Data, known: Setup) -> Array:
+def noise_of(data: Data, known: StereoGeometry) -> Array:
     """Return the measurements' known noise (m,), 1 sigma."""
     rows = np.zeros(stereo.ROWS)
     for name, where in (

@@ -41,7 +41,7 @@ class Shown(NamedTuple):
 EVERYTHING_OF_CAMERAS = Shown()
 
 
-class Setup(NamedTuple):
+class StereoGeometry(NamedTuple):
     """What is known without error: orbit, cameras, number of points; and the time step, s."""
 
     leader: Leader
@@ -70,7 +70,7 @@ class Setup(NamedTuple):
         )
 
 
-def setup(
+def stereo_geometry(
     epochs: int,
     step: float,
     semi_major_axis: float,
@@ -80,14 +80,14 @@ def setup(
     baseline: float = 1.0,
     shown: Shown = EVERYTHING_OF_CAMERAS,
     raw_rotation: bool = False,
-) -> Setup:
+) -> StereoGeometry:
     """Return the setup of ``epochs`` epochs (the first at the true anomaly), SI and rad."""
     times = np.arange(2 * epochs - 1, dtype=np.float64) * (0.5 * step)
     leader = leader_orbit(times, semi_major_axis, eccentricity, true_anomaly)
-    return Setup(leader, step, points, baseline, shown, raw_rotation)
+    return StereoGeometry(leader, step, points, baseline, shown, raw_rotation)
 
 
-def process(known: Setup, state: NDArray[Any], k: int) -> NDArray[Any]:
+def process(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
     """States ``(..., n)`` one step after epoch ``k``."""
     leader = known.moments_of_step(k)
     following = state.copy()
@@ -115,14 +115,14 @@ def points_in_view(
     return state[..., None, POSITION] + arm, velocity
 
 
-def target_acceleration(known: Setup, state: NDArray[Any], k: int) -> NDArray[Any]:
+def target_acceleration(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
     """Angular acceleration of the target ``(..., 3)`` in ``t``, rad/s^2, at epoch ``k``."""
     spin = np.array([0.0, 0.0, float(known.leader.rate[2 * k])])
     rate_t = unrotate(state[..., Q], state[..., RATE] + spin, known.raw_rotation)
     return inertia_ratios.angular_acceleration(rate_t, state[..., K])
 
 
-def measurement(known: Setup, state: NDArray[Any], k: int) -> NDArray[Any]:
+def measurement(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
     """Measurements ``(..., m)`` of epoch ``k``: point by point, then the angular acceleration."""
     point, velocity = points_in_view(state, known.points, known.raw_rotation)
     shown = stereo.measure(point, velocity, known.baseline)[..., known.rows]

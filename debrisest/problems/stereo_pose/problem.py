@@ -6,24 +6,25 @@ import numpy as np
 
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.model import Model
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.stereo_pose.additive import additive_model
 from debrisest.problems.stereo_pose.chart import ATTITUDE_ERROR
 from debrisest.problems.stereo_pose.data import (
     NAMES,
     Measure,
+    geometry_of,
     measured_of,
     noise_of,
     parts_of,
-    setup_of,
     shown_of,
     state_of,
 )
 from debrisest.problems.stereo_pose.model import RATE, VELOCITY, K, Q
 from debrisest.problems.stereo_pose.replay import replay_model
 from debrisest.problems.stereo_pose.score import scores
-from debrisest.roles import Filtered, Keys, NonNegative, ProblemPart, Window
+from debrisest.roles import Keys, NonNegative, ProblemPart, Window
 
 
 class _StereoPose(ProblemPart):
@@ -70,7 +71,7 @@ class StereoPoseAdditive(_StereoPose):
 
     def model(self, data: Data, clock: Clock) -> Model:
         """Return process and measurement of one clock step."""
-        known = setup_of(data, clock, self.measures, self.raw_rotation)
+        known = geometry_of(data, clock, self.measures, self.raw_rotation)
         variance = np.zeros(15 + 3 * known.points)
         variance[VELOCITY] = self.process_noise.velocity_m_s**2
         variance[RATE] = self.process_noise.rate_rad_s**2
@@ -82,7 +83,7 @@ class StereoPoseAdditive(_StereoPose):
         state = state_of(guess)
         return state, _each(np.diag(_variances(variance, state)), len(state))
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
         return _with_sigmas(filtered.state, filtered.sigma)
 
@@ -96,7 +97,7 @@ class StereoPose(_StereoPose):
 
     def model(self, data: Data, clock: Clock) -> ReplayModel:
         """Return trajectories, measurements and charts."""
-        known = setup_of(data, clock, self.measures)
+        known = geometry_of(data, clock, self.measures)
         variance = {name: float(data[f"start_{name}_sigma"].flat[0]) ** 2 for name in NAMES}
         prior = _plain(_variances(variance, state_of(data, "start_")))
         return replay_model(known, noise_of(data, known), np.sqrt(prior))
@@ -106,7 +107,7 @@ class StereoPose(_StereoPose):
         state = state_of(guess)
         return state, _each(np.diag(_plain(_variances(variance, state))), len(state))
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma.
 
         A quaternion component's follows from the angles' as if these were uncorrelated.

@@ -7,14 +7,14 @@ from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import transitions
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose.model import (
     POSITION,
     RATE,
     K,
     Q,
-    Setup,
+    StereoGeometry,
     error_names,
     points_in_view,
 )
@@ -25,7 +25,7 @@ _TURN = slice(6, 14)
 """Plain errors of rate, attitude and ratios."""
 
 
-def replay_model(known: Setup, sigma: Array, prior_sigma: Array) -> ReplayModel:
+def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> ReplayModel:
     """Return the problem for `debrisest.filters.replay.replay`.
 
     ``sigma (m,)`` is the noise of the measurements; ``prior_sigma (n_e,)`` that of the prior, with
@@ -71,7 +71,7 @@ def transition(turning: Array, centre: Array, points: int) -> Array:
 
 
 def rows(
-    known: Setup, states: Array, turning: Array, centre: Array, epochs: IntArray
+    known: StereoGeometry, states: Array, turning: Array, centre: Array, epochs: IntArray
 ) -> tuple[Array, Array]:
     """Measurements ``(run, epoch, m)`` and their derivative ``(run, epoch, m, n_e)``.
 
@@ -102,7 +102,7 @@ def rows(
 
 
 def _acceleration_rows(
-    known: Setup, states: Array, turning: Array, epochs: IntArray
+    known: StereoGeometry, states: Array, turning: Array, epochs: IntArray
 ) -> tuple[Array, Array]:
     back = np.swapaxes(quaternion.to_matrix(states[..., Q]), -1, -2)
     total = states[..., RATE].copy()

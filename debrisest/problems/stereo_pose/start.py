@@ -7,7 +7,7 @@ from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.filters import weights
-from debrisest.filters.covariance import solve
+from debrisest.filters.linear_algebra import solve
 from debrisest.problems.stereo_pose.model import (
     POINTS,
     POSITION,
@@ -15,7 +15,7 @@ from debrisest.problems.stereo_pose.model import (
     VELOCITY,
     K,
     Q,
-    Setup,
+    StereoGeometry,
     points_in_view,
 )
 from debrisest.sensors import stereo
@@ -26,7 +26,7 @@ _PRIOR_SHARE = 0.01
 
 
 def first_guess(
-    known: Setup, prior: Array, prior_sigma: Array, shown: Array, sigma: Array, epoch: int
+    known: StereoGeometry, prior: Array, prior_sigma: Array, shown: Array, sigma: Array, epoch: int
 ) -> Array:
     """State ``(run, n)`` at epoch 0 that agrees with what ``epoch`` shows, ``(run, m)``.
 
@@ -57,7 +57,7 @@ def first_guess(
     return start
 
 
-def _frame(known: Setup, shown: Array) -> Array:
+def _frame(known: StereoGeometry, shown: Array) -> Array:
     """All nine rows of every point ``(run, N, 9)``; NaN where a row is not measured."""
     frame = np.full((len(shown), known.points, stereo.ROWS), np.nan)
     count = known.points * len(known.rows)
@@ -65,7 +65,7 @@ def _frame(known: Setup, shown: Array) -> Array:
     return frame
 
 
-def _points(known: Setup, frame: Array, guess: Array) -> Array:
+def _points(known: StereoGeometry, frame: Array, guess: Array) -> Array:
     """Points ``(run, N, 3)`` in the leader's axes, or their guess."""
     y = stereo.depth(frame, known.baseline)
     point = np.stack([frame[..., 0] * y, y, frame[..., 1] * y], axis=-1)

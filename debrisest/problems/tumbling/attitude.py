@@ -18,9 +18,10 @@ import numpy as np
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
+from debrisest.filters.estimates import Estimates
 from debrisest.filters.model import Model
 from debrisest.problems.tumbling.score import scores
-from debrisest.roles import Filtered, Keys, Positive, ProblemPart, Window
+from debrisest.roles import Keys, Positive, ProblemPart, Window
 
 Q_IB, Q_BF, RATE, MOMENTS = slice(0, 4), slice(4, 8), slice(8, 11), slice(11, 14)
 ERROR_NAMES = tuple(
@@ -153,7 +154,7 @@ class TumblingAttitude(ProblemPart):
         covariance = Variances(**variance).diagonal()
         return state, np.broadcast_to(covariance, (len(state), *covariance.shape)).copy()
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
         blocks = {"q_ib": Q_IB, "q_bf": Q_BF, "rate_b": RATE, "moments_b": MOMENTS}
         return {name: filtered.state[..., block] for name, block in blocks.items()} | {

@@ -14,13 +14,14 @@ from debrisest.assessment.nees import covariance_epochs
 from debrisest.attitude import quaternion
 from debrisest.attitude.points import features_frame
 from debrisest.clock import Clock
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.estimates import Estimates
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.tumbling.points_axes import in_principal_axes, rate_by_errors, sigmas
 from debrisest.problems.tumbling.points_contrasts import compared, contrasts
 from debrisest.problems.tumbling.points_inertia import log_inertia
 from debrisest.problems.tumbling.points_replay import replay_model
 from debrisest.problems.tumbling.score import scores
-from debrisest.roles import Filtered, Keys, Positive, ProblemPart, Window
+from debrisest.roles import Keys, Positive, ProblemPart, Window
 
 
 class MotionVariances(Keys):
@@ -57,11 +58,11 @@ class TumblingPoints(ProblemPart):
         return replay_model(data["known_point_f"], _seen(data), noise, clock.step)
 
     def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
-        """Return the initial state (run, 13) and the covariance (run, 11, 11) of its errors."""
+        """Return the initial state (run, 12) and the covariance (run, 11, 11) of its errors."""
         state = _state(guess["q_if"], guess["rate_f"], guess["log_inertia"])
         return state, np.tile(MotionVariances(**variance).diagonal(), (len(state), 1, 1))
 
-    def unpack(self, filtered: Filtered) -> Data:
+    def unpack(self, filtered: Estimates) -> Data:
         """Return the estimates in principal axes by name, each with its sigma."""
         estimates = in_principal_axes(filtered.state)
         return estimates | sigmas(estimates, filtered.sigma)
@@ -75,7 +76,7 @@ class TumblingPoints(ProblemPart):
         return scores(data, scored, covariance)
 
     def truth(self, data: Data) -> Array | None:
-        """Return the true states (run, time, 13), where they are known."""
+        """Return the true states (run, time, 12), where they are known."""
         if "true_q_ib" not in data:
             return None
         frame = features_frame(data["true_point_b"])[:, None]
@@ -90,13 +91,6 @@ def _seen(data: Data) -> BoolArray:
 
 
 def _state(q: Array, rate: Array, log_inertia: Array) -> Array:
-    """States (run, ..., 13), each with the number of its run in the batch."""
-    shape = q.shape[:-1]
-    run = np.arange(len(q)).reshape(-1, *[1] * (len(shape) - 1))
-    parts = [
-        q,
-        rate,
-        np.broadcast_to(log_inertia, (*shape, 5)),
-        np.broadcast_to(run, shape)[..., None],
-    ]
-    return np.concatenate(parts, axis=-1)
+    """States (run, ..., 12)."""
+    constant = np.broadcast_to(log_inertia, (*q.shape[:-1], 5))
+    return np.concatenate([q, rate, constant], axis=-1)

@@ -21,7 +21,7 @@ _LEAST_GAP = 1e-9
 
 
 def in_principal_axes(state: Array) -> Data:
-    """Return ``q_ib``, ``q_bf``, ``rate_b`` and ``moments_b`` of states (run, time, 13).
+    """Return ``q_ib``, ``q_bf``, ``rate_b`` and ``moments_b`` of states (run, time, 12).
 
     The axes of a run keep their labels: they are those nearest to the axes of its last epoch.
     """

@@ -1,8 +1,7 @@
 """State and motion of a torque-free body whose axes are those of its features.
 
-The state (13) is ``q_if`` (feature frame to inertial), the rate in the feature frame, rad/s, five
-coordinates of the inertia (`debrisest.problems.tumbling.points_inertia`), and the number of the run
-in its batch, which no motion changes.
+The state (12) is ``q_if`` (feature frame to inertial), the rate in the feature frame, rad/s, and
+five coordinates of the inertia (`debrisest.problems.tumbling.points_inertia`).
 
 The errors (11) are a rotation vector in inertial axes, applied from the left, and differences. An
 error of the attitude is therefore the same at all epochs, and none of the rate.
@@ -15,7 +14,7 @@ from debrisest.attitude import quaternion
 from debrisest.dynamics.torque_free import torque_free
 from debrisest.problems.tumbling.points_inertia import possible, principal_logs
 
-Q, RATE, LOG_INERTIA, RUN = slice(0, 4), slice(4, 7), slice(7, 12), slice(12, 13)
+Q, RATE, LOG_INERTIA = slice(0, 4), slice(4, 7), slice(7, 12)
 TURN_ERROR, RATE_ERROR, INERTIA_ERROR = slice(0, 3), slice(3, 6), slice(6, 11)
 ERROR_NAMES = tuple(
     [f"attitude_{axis}" for axis in "xyz"]
@@ -39,15 +38,15 @@ def motion(state: Array, times: Array) -> tuple[Array, Array]:
 
 
 def moved(state: Array, time: float) -> Array:
-    """Return the states (..., 13) ``time`` seconds later."""
+    """Return the states (..., 12) ``time`` seconds later."""
     q, rate = motion(state, np.array([time]))
     return np.concatenate([q[..., 0, :], rate[..., 0, :], state[..., 7:]], axis=-1)
 
 
 def trajectory(state: Array, times: Array) -> tuple[Array, Array]:
-    """Return states (run, epoch, 13), and their sensitivities (run, epoch, 6, 8).
+    """Return states (run, epoch, 12), and their sensitivities (run, epoch, 6, 8).
 
-    These are the derivatives of attitude and rate by rate and inertia of ``state (run, 13)``, by
+    These are the derivatives of attitude and rate by rate and inertia of ``state (run, 12)``, by
     central differences of sixteen copies of the body.
     """
     if not times.any():
@@ -55,7 +54,7 @@ def trajectory(state: Array, times: Array) -> tuple[Array, Array]:
     step = _steps(state, times)
     shift = np.concatenate([step, -step], axis=-1) * np.tile(np.eye(8), 2)
     copies = np.repeat(state[:, None], 17, axis=1)
-    copies[:, 1:, 4:12] += np.swapaxes(shift, -1, -2)
+    copies[:, 1:, 4:] += np.swapaxes(shift, -1, -2)
     q, rate = motion(copies, times)
     ahead, back = slice(1, 9), slice(9, 17)
     turn = _small_turn(q[:, ahead], q[:, back])
@@ -67,15 +66,13 @@ def trajectory(state: Array, times: Array) -> tuple[Array, Array]:
 
 
 def displace(state: Array, error: Array) -> Array:
-    """Return states (..., 13) moved by errors (..., 11)."""
+    """Return states (..., 12) moved by errors (..., 11)."""
     q = quaternion.multiply(quaternion.exp(error[..., TURN_ERROR]), state[..., Q])
-    rest = state[..., 4:12] + error[..., 3:]
-    run = np.broadcast_to(state[..., RUN], (*rest.shape[:-1], 1))
-    return np.concatenate([q, rest, run], axis=-1)
+    return np.concatenate([q, state[..., 4:] + error[..., 3:]], axis=-1)
 
 
 def retract(state: Array, error: Array) -> Array:
-    """Return states (..., 13) moved by errors (..., 11), their inertia kept that of a body."""
+    """Return states (..., 12) moved by errors (..., 11), their inertia kept that of a body."""
     result = displace(state, error)
     result[..., LOG_INERTIA] = possible(result[..., LOG_INERTIA])
     return result
@@ -84,7 +81,7 @@ def retract(state: Array, error: Array) -> Array:
 def difference(state: Array, reference: Array) -> Array:
     """Return the errors (..., 11) that take the reference to the state."""
     turn = quaternion.multiply(state[..., Q], quaternion.conjugate(reference[..., Q]))
-    return np.concatenate([quaternion.log(turn), state[..., 4:12] - reference[..., 4:12]], axis=-1)
+    return np.concatenate([quaternion.log(turn), state[..., 4:] - reference[..., 4:]], axis=-1)
 
 
 def _steps(state: Array, times: Array) -> Array:

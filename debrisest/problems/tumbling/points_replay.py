@@ -5,7 +5,7 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.tumbling import points_motion as body
 from debrisest.problems.tumbling.points_contrasts import contrasts
 
@@ -14,10 +14,13 @@ def replay_model(known_point_f: Array, seen: BoolArray, noise: float, step: floa
     """Return the problem of ``seen (run, time, feature)`` points.
 
     ``known_point_f (run, feature, 3)``, m, in the feature frame; ``noise`` of a coordinate, m;
-    ``step`` of an epoch, s. What a run shows of its points depends on which it sees: states carry
-    the number of their run.
+    ``step`` of an epoch, s.
     """
     arms = contrasts(known_point_f[:, None], seen)
+    return _model(arms, np.arange(len(arms)), noise, step)
+
+
+def _model(arms: Array, runs: IntArray, noise: float, step: float) -> ReplayModel:
     rows_of_epoch = 3 * arms.shape[-2]
 
     def trajectory(state: Array, first: int, last: int) -> tuple[Array, Array]:
@@ -26,7 +29,7 @@ def replay_model(known_point_f: Array, seen: BoolArray, noise: float, step: floa
 
     return ReplayModel(
         trajectory=trajectory,
-        rows=lambda states, turning, _, epochs: rows(arms, states, turning, epochs),
+        rows=lambda states, turning, _, epochs: rows(arms[runs[:, None], epochs], states, turning),
         transition=lambda turning, _, __: transition(turning),
         rewind=lambda state, epoch: body.moved(state, -epoch * step),
         chart=_identity,
@@ -38,18 +41,18 @@ def replay_model(known_point_f: Array, seen: BoolArray, noise: float, step: floa
         sigma=np.full(rows_of_epoch, noise),
         error_names=body.ERROR_NAMES,
         displace=body.displace,
+        select=lambda chosen: _model(arms, runs[chosen], noise, step),
     )
 
 
-def rows(arms: Array, states: Array, turning: Array, epochs: IntArray) -> tuple[Array, Array]:
+def rows(arms: Array, states: Array, turning: Array) -> tuple[Array, Array]:
     """Contrasts ``(run, epoch, m)`` of the points and their derivative ``(run, epoch, m, 11)``.
 
-    ``arms (run, time, feature - 1, 3)`` are the contrasts in the feature frame, of all runs;
-    ``states (run, epoch, 13)`` those of ``epochs``, and ``turning (run, epoch, 6, 8)`` theirs.
+    ``arms (run, epoch, feature - 1, 3)`` are the contrasts in the feature frame of the epochs of
+    ``states (run, epoch, 12)``, and ``turning (run, epoch, 6, 8)`` theirs.
     """
-    runs = states[:, :1, body.RUN.start].astype(np.int64)
     turn = quaternion.to_matrix(states[..., body.Q])
-    shown = arms[runs, epochs] @ np.swapaxes(turn, -1, -2)
+    shown = arms @ np.swapaxes(turn, -1, -2)
     by_turn = -matrix_of_cross(shown)
     by_rest = by_turn @ turning[:, :, None, :3]
     derivative = np.concatenate([by_turn, by_rest], axis=-1)

@@ -33,12 +33,12 @@ def run(case: Case, estimator: str, data: Data) -> Data:
     if chosen.recovery is not None:
         result |= chosen.recovery.assess(data)
     if chosen.problem is not None:
-        result |= told_by_filter(data)
+        result |= diagnostics(data)
         result |= chosen.problem.assess(data, case.scenario.scored)
     return result
 
 
-def told_by_filter(data: Data) -> Data:
+def diagnostics(data: Data) -> Data:
     """Return what a filter says of itself, whatever the problem: consistency and counters."""
     result: Data = {name: data[name] for name in _COUNTED if name in data}
     used = data["nis_dof"]

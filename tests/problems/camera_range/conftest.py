@@ -8,13 +8,13 @@ import pytest
 from debrisest.attitude import quaternion
 from debrisest.dynamics import clohessy_wiltshire, gravity_gradient, log_inertia
 from debrisest.dynamics.pointing import camera_axes
+from debrisest.filters.landmark_model import LandmarkModel, Observations, split
 from debrisest.filters.landmarks.batch_start import Batch, Started, batch_start
 from debrisest.filters.landmarks.growing_windows import Window
 from debrisest.filters.landmarks.landmark_filter import landmark_filter
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Sights, split
-from debrisest.filters.landmarks.update import Belief, Rule
-from debrisest.problems.camera_range.model import Setup
-from debrisest.problems.camera_range.sights import landmark_model
+from debrisest.filters.landmarks.update import Belief, UpdateSettings
+from debrisest.problems.camera_range.model import CameraRangeGeometry
+from debrisest.problems.camera_range.projection import landmark_model
 
 N, STEP, FOCAL = 1.078007613e-3, 5.0, 1000.0
 CORNERS = np.array([[x, y, z] for x in (1, -1) for y in (0.75, -0.75) for z in (0.5, -0.5)])
@@ -25,28 +25,30 @@ WINDOWS = [Window(10, 1), Window(20, 1), Window(40, 1), Window(70, 2), Window(10
 
 
 class Experiment(NamedTuple):
-    """Setup, model, sights and truth of all epochs, and a first guess with its covariance."""
+    """Setup, model, observed and truth of all epochs, and a first guess with its covariance."""
 
-    known: Setup
+    known: CameraRangeGeometry
     model: LandmarkModel
-    sights: Sights
+    observed: Observations
     core: np.ndarray
     points: np.ndarray
     parameters: np.ndarray
     covariance: np.ndarray
 
-    def with_sights(self, sights: Sights) -> "Experiment":
-        return self._replace(sights=sights)
+    def with_observed(self, observed: Observations) -> "Experiment":
+        return self._replace(observed=observed)
 
     def batch(self, **options) -> Started:
         settings = Batch(**({"windows": WINDOWS} | options))
         with np.errstate(all="ignore"):
-            return batch_start(self.model, self.sights, self.parameters, self.covariance, settings)
+            return batch_start(
+                self.model, self.observed, self.parameters, self.covariance, settings
+            )
 
     def filtered(self, started: Started, **rule):
         belief = Belief(started.core, started.points, started.covariance)
         return landmark_filter(
-            self.model, belief, started.present, started.last, self.sights, Rule(**rule)
+            self.model, belief, started.present, started.last, self.observed, UpdateSettings(**rule)
         )
 
     def start_error(self, started: Started) -> np.ndarray:
@@ -91,7 +93,7 @@ def simulate(
         drawn = to_point + 0.01 * noise * rng.normal(size=(runs, epochs))
         lengths[:, np.arange(epochs), near, 0] = drawn
         shown = [np.concatenate([pixel, lengths], -1).reshape(runs, epochs, -1)]
-    known = Setup(
+    known = CameraRangeGeometry(
         camera=np.broadcast_to(camera, (runs, *camera.shape)),
         points=len(POINTS),
         mean_motion=N,

@@ -37,8 +37,8 @@ def test_the_attitude_at_time_zero_is_exact_or_tied_to_the_position(nominal, exp
     assert np.abs(started.covariance[:, :3]).max() == 0.0
     implied = experiment(2, 60, 2, attitude="implied")
     found = implied.batch(windows=SHORT)
-    _, freedom = implied.model.start(implied.model.parameters(found.core))
-    tied = freedom[:, :3, 3:6] @ found.covariance[:, 6:9]
+    _, by_parameters = implied.model.start(implied.model.parameters(found.core))
+    tied = by_parameters[:, :3, 3:6] @ found.covariance[:, 6:9]
     np.testing.assert_allclose(found.covariance[:, :3], tied, atol=1e-12)
 
 
@@ -101,7 +101,7 @@ def test_runs_do_not_depend_on_their_companions(experiment) -> None:
     case = experiment(3, 60, 9)
     alone = case._replace(
         model=case.model.of(np.array([1])),
-        sights=case.sights.at(np.array([1])),
+        observed=case.observed.at(np.array([1])),
         parameters=case.parameters[1:2],
         covariance=case.covariance[1:2],
     )
@@ -112,9 +112,9 @@ def test_runs_do_not_depend_on_their_companions(experiment) -> None:
 
 def test_a_landmark_that_is_never_seen_is_absent(experiment) -> None:
     case = experiment(2, 60, 10)
-    sights = case.sights._replace(seen=case.sights.seen.copy())
-    sights.seen[:, :, 3] = False
-    started = case.with_sights(sights).batch(windows=SHORT)
+    observed = case.observed._replace(seen=case.observed.seen.copy())
+    observed.seen[:, :, 3] = False
+    started = case.with_observed(observed).batch(windows=SHORT)
     assert not started.present[:, 3].any()
     assert np.delete(started.present, 3, axis=1).all()
     assert np.abs(started.covariance[:, 17 + 9 : 17 + 12]).max() == 0.0

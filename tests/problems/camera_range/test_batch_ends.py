@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from debrisest.filters.landmark_model import LandmarkModel
 from debrisest.filters.landmarks.batch_start import StartStatus
 from debrisest.filters.landmarks.cost import Prior
 from debrisest.filters.landmarks.growing_windows import Window, fit, fresh
-from debrisest.filters.landmarks.landmark_model import LandmarkModel
 
 SHORT = [Window(10, 1), Window(20, 1), Window(40, 1)]
 RATE = slice(3, 6)
@@ -67,9 +67,9 @@ def test_a_fit_of_fewer_frames_does_not_win(experiment) -> None:
 def test_too_few_landmarks_are_no_start(experiment) -> None:
     case = experiment(2, 42, 23, guess=0.2)
     for count, status in ((3, StartStatus.TOO_FEW), (5, StartStatus.FOUND)):
-        sights = case.sights._replace(seen=case.sights.seen.copy())
-        sights.seen[:, :, count:] = False
-        started = case.with_sights(sights).batch(windows=SHORT)
+        observed = case.observed._replace(seen=case.observed.seen.copy())
+        observed.seen[:, :, count:] = False
+        started = case.with_observed(observed).batch(windows=SHORT)
         assert (started.present.sum(-1) == count).all()
         assert (started.status == status).all()
     assert "too few landmarks" in StartStatus.TOO_FEW.sentence
@@ -83,6 +83,6 @@ def test_the_last_window_is_given_patience(experiment) -> None:
     begin, costs = at.moved(np.zeros_like(mean)), []
     with np.errstate(all="ignore"):
         for most in (2, 60):
-            found = fit(case.model, case.sights, begin, prior, SHORT, most, False)
+            found = fit(case.model, case.observed, begin, prior, SHORT, most, False)
             costs.append(found.found.value)
     assert (np.abs(costs[0] - costs[1]) < 10.0).all()

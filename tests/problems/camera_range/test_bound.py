@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from debrisest.assessment.landmark_bound import landmark_bound
+from debrisest.filters.bound.landmarks import landmark_bound
 
 
-def bound(case, sights):
+def bound(case, observed):
     known = case.core[:, 0], case.points, case.parameters, case.covariance
-    return landmark_bound(case.model, *known, sights)
+    return landmark_bound(case.model, *known, observed)
 
 
 @pytest.fixture(scope="module")
@@ -17,8 +17,8 @@ def case(experiment):
 
 
 def test_without_measurements_the_error_is_that_of_the_first_guess(case) -> None:
-    nothing = case.sights._replace(
-        seen=np.zeros_like(case.sights.seen), common_seen=np.zeros_like(case.sights.common_seen)
+    nothing = case.observed._replace(
+        seen=np.zeros_like(case.observed.seen), common_seen=np.zeros_like(case.observed.common_seen)
     )
     found = bound(case, nothing)
     offset = case.parameters - case.model.parameters(case.core[:, 0])
@@ -29,12 +29,12 @@ def test_without_measurements_the_error_is_that_of_the_first_guess(case) -> None
 
 
 def test_a_false_match_counts_as_if_it_were_hidden(case) -> None:
-    shown, seen = case.sights.shown.copy(), case.sights.seen.copy()
+    shown, seen = case.observed.shown.copy(), case.observed.seen.copy()
     shown[:, 7, 4, 0] += 50.0
     shown[0, 20, 1, 1] -= 9.0 + 5.0
     seen[:, 7, 4] = False
     seen[0, 20, 1] = False
-    false = bound(case, case.sights._replace(shown=shown))
-    hidden = bound(case, case.sights._replace(seen=seen))
+    false = bound(case, case.observed._replace(shown=shown))
+    hidden = bound(case, case.observed._replace(seen=seen))
     np.testing.assert_allclose(false.error, hidden.error, rtol=1e-9, atol=1e-15)
     np.testing.assert_allclose(false.sigma, hidden.sigma, rtol=1e-9)

@@ -1,10 +1,10 @@
-"""Motion and sights: against a simulation by other formulas, and derivatives by differences."""
+"""Motion and observed: against a simulation by other formulas, and derivatives by differences."""
 
 import numpy as np
 import pytest
 
 from debrisest.attitude import quaternion
-from debrisest.problems.camera_range.sights import landmark_model
+from debrisest.problems.camera_range.projection import landmark_model
 
 CASES = {
     "known": {},
@@ -25,10 +25,10 @@ def test_the_truth_shows_what_was_simulated(case) -> None:
         case.core[..., -3:] = 0.0
     cores, _ = case.model.trajectory(case.core[:, 0], 11)
     rows = case.model.rows(cores, case.points[:, None], np.arange(12))
-    sights = case.sights
-    difference = np.where(sights.seen, sights.shown - rows.shown, 0.0)
+    observed = case.observed
+    difference = np.where(observed.seen, observed.shown - rows.shown, 0.0)
     np.testing.assert_allclose(difference, 0.0, atol=1e-3)
-    np.testing.assert_allclose(sights.common, rows.common, atol=1e-9)
+    np.testing.assert_allclose(observed.common, rows.common, atol=1e-9)
 
 
 def test_derivatives_of_the_sights(case) -> None:
@@ -50,7 +50,7 @@ def test_derivatives_of_the_sights(case) -> None:
 def test_derivatives_of_the_places(case) -> None:
     model, epochs = case.model, np.full((2, len(case.points[0])), 5)
     cores = np.repeat(case.core[:, 5:6], epochs.shape[1], axis=1)
-    shown = case.sights.shown[:, 5]
+    shown = case.observed.shown[:, 5]
     points, by_core, _ = model.place(cores, shown, epochs)
     for k, step in enumerate(1e-6 * np.eye(model.errors)):
         error = np.broadcast_to(step, (*cores.shape[:2], model.errors))

@@ -5,10 +5,10 @@ import pytest
 from scipy.stats import chi2
 
 from debrisest.filters.association.single import associated, jointly_associated
-from debrisest.filters.association.weights import Validation
+from debrisest.filters.association.weights import Validation, inverse_unit_ball, unit_ball
 
-PRINTED = Validation(gate=5.0, detection_probability=0.7, misses="printed")
-CORRECTED = PRINTED._replace(misses="corrected")
+PRINTED = Validation(gate=5.0, detection_probability=0.7, ball=inverse_unit_ball)
+CORRECTED = PRINTED._replace(ball=unit_ball)
 KEEP = [24, 469]
 
 

@@ -1,4 +1,7 @@
-"""Linear algebra of batched covariances in which no run can stop the others."""
+"""Linear algebra of batched covariances in which no run can stop the others.
+
+Unknowns of the `scaled` functions may differ by orders of magnitude.
+"""
 
 import numpy as np
 
@@ -9,14 +12,29 @@ _SMALLEST_VARIANCE = 1e-30
 
 
 def solve(matrix: Array, right: Array) -> Array:
-    """Solution per run; NaN where the matrix is singular."""
+    """Solution for every leading index; NaN where the matrix is singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     except np.linalg.LinAlgError:
         sign, _ = np.linalg.slogdet(matrix)
-        singular = ~(np.abs(sign) > 0.0)[:, None, None]
+        singular = ~(np.abs(sign) > 0.0)[..., None, None]
         solved = np.linalg.solve(np.where(singular, np.eye(matrix.shape[-1]), matrix), right)
         return np.where(singular, np.nan, solved)
+
+
+def scaled_solve(matrix: Array, right: Array) -> Array:
+    """Solution ``(run, n_e)``; NaN where the matrix is singular."""
+    scale = np.diagonal(matrix, 0, -2, -1) ** -0.5
+    scaled = scale[..., :, None] * matrix * scale[..., None, :]
+    return scale * solve(scaled, (scale * right)[..., None])[..., 0]
+
+
+def scaled_inverse(matrix: Array) -> Array:
+    """Inverse ``(run, n_e, n_e)``, symmetric; NaN where the matrix is singular."""
+    scale = np.diagonal(matrix, 0, -2, -1) ** -0.5
+    both = scale[..., :, None] * scale[..., None, :]
+    inverse = solve(both * matrix, np.broadcast_to(np.eye(matrix.shape[-1]), matrix.shape))
+    return 0.5 * both * (inverse + np.swapaxes(inverse, -1, -2))
 
 
 def square_root(covariance: Array) -> tuple[Array, BoolArray]:

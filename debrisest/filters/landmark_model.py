@@ -30,7 +30,7 @@ class Rows(NamedTuple):
     (..., N, r, c); c may be zero."""
 
 
-class Sights(NamedTuple):
+class Observations(NamedTuple):
     """Measurements of runs and epochs, zero where nothing was seen."""
 
     shown: Array
@@ -41,10 +41,10 @@ class Sights(NamedTuple):
     """(run, ..., m)."""
     common_seen: BoolArray
 
-    def at(self, *index: Any) -> "Sights":
+    def at(self, *index: Any) -> "Observations":
         """Return those of some runs and epochs."""
         parts: list[Any] = [values[index] for values in self]
-        return Sights(*parts)
+        return Observations(*parts)
 
 
 class LandmarkModel(NamedTuple):
@@ -104,17 +104,22 @@ class LandmarkModel(NamedTuple):
         return np.asarray(seen[..., : self.directions].all(-1))
 
 
-def split(model: LandmarkModel, measured: Array) -> Sights:
-    """Return measurements ``(run, time, N r + m)``, landmark by landmark, as sights."""
+def split(model: LandmarkModel, measured: Array) -> Observations:
+    """Return measurements ``(run, time, N r + m)``, landmark by landmark."""
     seen = ~np.isnan(measured)
     filled, each = np.where(seen, measured, 0.0), model.landmarks * model.rows_each
     shape = (*measured.shape[:-1], model.landmarks, model.rows_each)
-    return Sights(
+    return Observations(
         filled[..., :each].reshape(shape),
         seen[..., :each].reshape(shape),
         filled[..., each:],
         seen[..., each:],
     )
+
+
+def core_of(model: LandmarkModel, state: Array) -> Array:
+    """Core (..., n) of a whole state."""
+    return state[..., : state.shape[-1] - 3 * model.landmarks]
 
 
 def points_of(model: LandmarkModel, state: Array) -> Array:

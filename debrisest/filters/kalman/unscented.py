@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
-from debrisest.filters.covariance import solve, square_root
-from debrisest.filters.history import History, HistoryWriter
+from debrisest.filters.estimates import Estimates, EstimatesWriter
+from debrisest.filters.linear_algebra import solve, square_root
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.model import Model, add, subtract
 
@@ -26,7 +26,7 @@ class UnscentedParameters(NamedTuple):
 _SPREAD = UnscentedParameters()
 
 
-class _Rule(NamedTuple):
+class _SigmaPointRule(NamedTuple):
     retract: Callable[[Array, Array], Array]
     scale: float
     mean_weights: Array
@@ -50,7 +50,7 @@ def unscented(
     spread: UnscentedParameters = _SPREAD,
     keep: Sequence[int] = (),
     redraw: bool = False,
-) -> History:
+) -> Estimates:
     """Filter a batch of runs (Biondi et al. 2017, Eqs 32-42).
 
     `state` (run, n) and `covariance` (run, n_e, n_e) are the prior of epoch 0, which measurement 0
@@ -71,17 +71,24 @@ def unscented(
     """
     rule = _rule(model, covariance.shape[-1], spread)
     epochs = measurements.shape[1]
-    writer = HistoryWriter(model, state, covariance, epochs, keep)
+    names = model.error_names
+    writer = EstimatesWriter(names, state, covariance, epochs, keep, totals=["repairs"])
+    going = writer.runs
     with np.errstate(all="ignore"):
         for k in range(epochs):
-            state, covariance = writer.live(state, covariance)
+            if len(going) < len(state):
+                model, state, covariance = model.of(going), state[going], covariance[going]
+                measurements = measurements[going]
+            if len(going) == 0:
+                break
             predicted = _predict(model, rule, state, covariance, k, redraw)
             state, covariance, nis, dof = _update(model, rule, predicted, measurements[:, k], k)
-            writer.record(k, state, covariance, nis, dof, predicted.repairs)
-    return writer.history()
+            figures = {"nis": nis, "nis_dof": dof, "repairs": predicted.repairs}
+            going = writer.record(k, state, covariance, figures)
+    return writer.estimates()
 
 
-def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _Rule:
+def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _SigmaPointRule:
     """How points are drawn and weighed.
 
     A mean is taken of differences from the central point, so that point's weight plays no part.
@@ -94,7 +101,7 @@ def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _Rule:
     outer = np.full(2 * n_e + 1, 0.5 / scaled)
     central = 1.0 - n_e / scaled + 1.0 - spread.alpha**2 + spread.beta
     values, vectors = np.linalg.eigh(model.measurement_noise)
-    return _Rule(
+    return _SigmaPointRule(
         retract=add if model.difference is subtract else model.retract,
         scale=float(np.sqrt(scaled)),
         mean_weights=outer,
@@ -104,7 +111,7 @@ def _rule(model: Model, n_e: int, spread: UnscentedParameters) -> _Rule:
 
 
 def _predict(
-    model: Model, rule: _Rule, state: Array, covariance: Array, k: int, redraw: bool
+    model: Model, rule: _SigmaPointRule, state: Array, covariance: Array, k: int, redraw: bool
 ) -> _Prediction:
     """Sigma points at epoch k before its measurement; at epoch 0 those of the prior itself."""
     start = _draw(rule, state, covariance)
@@ -120,7 +127,7 @@ def _predict(
     return again._replace(repairs=start.repairs + again.repairs)
 
 
-def _draw(rule: _Rule, mean: Array, covariance: Array) -> _Prediction:
+def _draw(rule: _SigmaPointRule, mean: Array, covariance: Array) -> _Prediction:
     root, repaired = square_root(covariance)
     runs, n_e = covariance.shape[:2]
     errors = np.zeros((runs, 2 * n_e + 1, n_e))
@@ -131,7 +138,7 @@ def _draw(rule: _Rule, mean: Array, covariance: Array) -> _Prediction:
 
 
 def _update(
-    model: Model, rule: _Rule, predicted: _Prediction, y: Array, k: int
+    model: Model, rule: _SigmaPointRule, predicted: _Prediction, y: Array, k: int
 ) -> tuple[Array, Array, Array, IntArray]:
     """Posterior state and covariance, NIS, and the number of measured components."""
     shown = model.measurement(predicted.points, k)
@@ -157,7 +164,7 @@ def _update(
     return model.retract(predicted.mean, correction), covariance, nis, measured.sum(-1)
 
 
-def _second_moment(rule: _Rule, deviations: Array) -> Array:
+def _second_moment(rule: _SigmaPointRule, deviations: Array) -> Array:
     """D^T W D of deviations D (run, point, n_e), symmetric to the last bit."""
     central, outer = rule.covariance_weights[0], rule.covariance_weights[1]
     moment: Array = outer * _gram(deviations) + (central - outer) * _gram(deviations[:, :1])

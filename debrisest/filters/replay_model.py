@@ -46,3 +46,9 @@ class ReplayModel(NamedTuple):
     """Of the plain errors."""
     displace: Callable[[Array, Array], Array] = add
     """Exact inverse of `difference`, physical or not, with which a bound's errors make states."""
+    select: Callable[[IntArray], "ReplayModel"] | None = None
+    """The model of some runs; without it, the model is the same for all."""
+
+    def of(self, runs: IntArray) -> "ReplayModel":
+        """Return the model of some runs."""
+        return self if self.select is None else self.select(runs)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 
 
 class ScanModel(NamedTuple):
@@ -18,6 +18,7 @@ class ScanModel(NamedTuple):
     * `points(x, k)` predicts the point that each sensor shows at epoch k, (run, ..., sensor, d).
       Where a sensor cannot predict one (NaN), its scan is not used.
     * `points_jacobian(x, k)` (run, ..., sensor, d, n) is its derivative at x.
+    * `select(runs)` gives the model of some runs; without it, the model is the same for all.
     """
 
     process: Callable[[Array, int], Array]
@@ -29,3 +30,8 @@ class ScanModel(NamedTuple):
     noise: Array
     """Covariance of a point, (d, d)."""
     error_names: tuple[str, ...]
+    select: Callable[[IntArray], "ScanModel"] | None = None
+
+    def of(self, runs: IntArray) -> "ScanModel":
+        """Return the model of some runs."""
+        return self if self.select is None else self.select(runs)

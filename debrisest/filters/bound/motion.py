@@ -12,11 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.weights import FALSE_MATCH
 
 _BLOCK = 10  # runs at a time, for the sake of memory
-_OUTLIER = 7.0
-"""A measurement so many sigmas off is an outlier: Gaussian noise would be once in 10^11 times."""
 
 
 class PairedErrors(NamedTuple):
@@ -94,16 +93,17 @@ def paired_errors(
     """
     last, blocks = measured.shape[1] - 1, []
     for begin in range(0, len(truth), _BLOCK):
-        runs = slice(begin, begin + _BLOCK)
-        states, sensitivity = model.trajectory(truth[runs], 0, last)
-        shown, derivative = model.rows(states, sensitivity, 0, np.arange(last + 1))
-        transition = [model.transition(sensitivity[:, k], 0, k) for k in range(last + 1)]
+        runs = np.arange(begin, min(begin + _BLOCK, len(truth)))
+        part = model.of(runs)
+        states, sensitivity = part.trajectory(truth[runs], 0, last)
+        shown, derivative = part.rows(states, sensitivity, 0, np.arange(last + 1))
+        transition = [part.transition(sensitivity[:, k], 0, k) for k in range(last + 1)]
         bound = efficient(
             np.stack(transition, axis=1),
             derivative,
             _without_outliers(measured[runs] - shown, model.sigma),
             model.sigma,
-            model.plain_difference(prior[runs], truth[runs]),
+            part.plain_difference(prior[runs], truth[runs]),
             covariance,
         )
         blocks.append(
@@ -116,7 +116,7 @@ def paired_errors(
 
 
 def _without_outliers(noise: Array, sigma: Array) -> Array:
-    return np.where(np.abs(noise) > _OUTLIER * sigma, np.nan, noise)
+    return np.where(np.abs(noise) > FALSE_MATCH * sigma, np.nan, noise)
 
 
 def _sigma(covariance: Array) -> Array:

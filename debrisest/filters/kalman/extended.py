@@ -5,20 +5,22 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters import jacobian
-from debrisest.filters.covariance import solve
+from debrisest.arrays import Array, BoolArray, Data, IntArray
+from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.gate import Gate, Gatekeeper
-from debrisest.filters.history import History, HistoryWriter, Tally
+from debrisest.filters.iterated import iterate
+from debrisest.filters.kalman import jacobian
+from debrisest.filters.linear_algebra import solve
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.model import Model
+from debrisest.filters.runs import put
 
 Stop = Literal["relative_norm", "scaled"]
 
 _SMALLEST_RATIO = 1e-12
 
 
-class _Rule(NamedTuple):
+class _UpdateSettings(NamedTuple):
     iterations: int
     tolerance: float
     stop: Stop
@@ -31,6 +33,11 @@ class _Prior(NamedTuple):
     y: Array
     used: BoolArray
 
+    def of(self, runs: IntArray) -> "_Prior":
+        return _Prior(
+            self.k, self.state[runs], self.covariance[runs], self.y[runs], self.used[runs]
+        )
+
 
 class _Step(NamedTuple):
     """One Gauss-Newton step: H^T, K^T, the correction of x-, the posterior's variances, NIS."""
@@ -40,14 +47,6 @@ class _Step(NamedTuple):
     correction: Array
     variance: Array
     nis: Array
-
-
-class _Posterior(NamedTuple):
-    state: Array
-    covariance: Array
-    nis: Array
-    dof: IntArray
-    tally: Tally
 
 
 def extended(
@@ -61,7 +60,7 @@ def extended(
     stop: Stop = "scaled",
     keep: Sequence[int] = (),
     gate: Gate | None = None,
-) -> History:
+) -> Estimates:
     """Filter a batch of runs; one iteration is the extended Kalman filter, more the iterated one.
 
     `state` (run, n) and `covariance` (run, n_e, n_e) are the prior of epoch 0, which measurement 0
@@ -82,30 +81,39 @@ def extended(
     A `gate` judges the innovations at x- and has those that it rejects treated as not observed;
     NIS counts the others, where a gate reopened with the prior that it doubted and enlarged.
     """
-    rule = _rule(iterations, tolerance, stop)
+    settings = _settings(iterations, tolerance, stop)
     epochs, components = measurements.shape[1:]
-    writer = HistoryWriter(model, state, covariance, epochs, keep)
     keeper = None if gate is None else Gatekeeper(gate, model.gate_groups, covariance, components)
-    repairs = np.zeros(len(state), dtype=np.int64)
+    counts, totals = {"updates": 0}, ["repairs"]
+    if gate is not None:
+        counts, totals = counts | {"rejected": 0}, [*totals, "reopened"]
+    names = model.error_names
+    writer = EstimatesWriter(names, state, covariance, epochs, keep, counts, totals)
+    going = writer.runs
     with np.errstate(all="ignore"):
         for k in range(epochs):
-            state, covariance = writer.live(state, covariance)
+            if len(going) < len(state):
+                model, state, covariance = model.of(going), state[going], covariance[going]
+                measurements = measurements[going]
+                keeper = None if keeper is None else keeper.of(going)
+            if len(going) == 0:
+                break
             if k > 0:
                 state, covariance = _predict(model, state, covariance, k - 1)
             y = measurements[:, k]
             prior = _Prior(k, state, covariance, y, ~np.isnan(y))
-            state, covariance, nis, dof, tally = _update(model, rule, keeper, prior, writer.alive)
-            writer.record(k, state, covariance, nis, dof, repairs, tally)
-    return writer.history()
+            state, covariance, figures = _update(model, settings, keeper, prior)
+            going = writer.record(k, state, covariance, figures)
+    return writer.estimates()
 
 
-def _rule(iterations: int, tolerance: float, stop: Stop) -> _Rule:
+def _settings(iterations: int, tolerance: float, stop: Stop) -> _UpdateSettings:
     if iterations < 1 or not tolerance > 0.0 or stop not in get_args(Stop):
         raise ValueError(
             f"at least one iteration, a positive tolerance and one of {get_args(Stop)} are "
             f"needed, not {iterations}, {tolerance} and {stop!r}"
         )
-    return _Rule(iterations, tolerance, stop)
+    return _UpdateSettings(iterations, tolerance, stop)
 
 
 def _predict(model: Model, state: Array, covariance: Array, k: int) -> tuple[Array, Array]:
@@ -115,18 +123,19 @@ def _predict(model: Model, state: Array, covariance: Array, k: int) -> tuple[Arr
 
 
 def _update(
-    model: Model, rule: _Rule, keeper: Gatekeeper | None, prior: _Prior, alive: BoolArray
-) -> _Posterior:
+    model: Model, settings: _UpdateSettings, keeper: Gatekeeper | None, prior: _Prior
+) -> tuple[Array, Array, Data]:
+    """Posterior state and covariance, and what is counted."""
     measured = prior.used
     innovation, response = _linearise(model, prior, prior.state)
-    reopened = np.zeros(len(alive), dtype=np.int64)
+    counts: Data = {}
     if keeper is not None:
-        prior, reopened = _gated(model, keeper, prior, innovation, response)
-    step = _step(model, prior, np.arange(len(alive)), innovation, response)
-    nis = step.nis.copy()
-    state, iterations = _iterate(model, rule, prior, step, alive)
-    tally = Tally(iterations, (measured & ~prior.used).sum(-1), reopened)
-    return _Posterior(state, _joseph(model, prior, step), nis, prior.used.sum(-1), tally)
+        prior, counts["reopened"] = _gated(model, keeper, prior, innovation, response)
+    step = _step(model, prior, innovation, response)
+    counts |= {"nis": step.nis.copy(), "nis_dof": prior.used.sum(-1)}
+    state, counts["updates"] = _iterate(model, settings, prior, step)
+    counts["rejected"] = (measured & ~prior.used).sum(-1)
+    return state, _joseph(model, prior, step), counts
 
 
 def _linearise(model: Model, prior: _Prior, state: Array) -> tuple[Array, Array]:
@@ -146,10 +155,10 @@ def _gated(
     return prior, verdict.reopened.astype(np.int64)
 
 
-def _step(model: Model, prior: _Prior, runs: IntArray, innovation: Array, response: Array) -> _Step:
-    """Step of the given runs, without the components that they do not use."""
-    nu, h_t, noise = innovation[runs], response[runs], model.measurement_noise
-    used, covariance = prior.used[runs], prior.covariance[runs]
+def _step(model: Model, prior: _Prior, nu: Array, response: Array) -> _Step:
+    """Step by innovation and transposed Jacobian, without the components that are not used."""
+    used, covariance = prior.used, prior.covariance
+    h_t, noise = np.copy(response), model.measurement_noise
     if not used.all():
         nu, h_t, noise = drop_missing(used, nu, h_t, noise)
     cross = covariance @ h_t
@@ -169,37 +178,29 @@ def _step(model: Model, prior: _Prior, runs: IntArray, innovation: Array, respon
 
 
 def _iterate(
-    model: Model, rule: _Rule, prior: _Prior, step: _Step, alive: BoolArray
+    model: Model, settings: _UpdateSettings, prior: _Prior, step: _Step
 ) -> tuple[Array, IntArray]:
-    """Posterior state and number of steps; leaves the last step of every run in `step`.
+    """Posterior state and number of steps; leaves the last step of every run in `step`."""
 
-    Only the linear algebra is confined to the runs still moving: a model may know one run from
-    another by its place, and is always shown all of them.
-    """
-    state, moving = model.retract(prior.state, step.correction), alive.copy()
-    count, before = np.ones(len(alive), dtype=np.int64), prior.state
-    for _ in range(rule.iterations - 1):
-        moving &= _moved(model, rule, before, state, step.variance)
-        runs = np.flatnonzero(moving)
-        if runs.size == 0:
-            break
-        innovation, response = _linearise(model, prior, state)
-        lag = model.difference(prior.state, state)
+    def again(runs: IntArray) -> None:
+        part, here = model.of(runs), prior.of(runs)
+        at = part.retract(here.state, step.correction[runs])
+        innovation, response = _linearise(part, here, at)
+        lag = part.difference(here.state, at)
         residual = innovation - (lag[:, None] @ response)[:, 0]
-        for kept, new in zip(step, _step(model, prior, runs, residual, response)):
-            kept[runs] = new
-        before, state = state, model.retract(prior.state, step.correction)
-        count[runs] += 1
-    return state, count
+        put(step, runs, _step(part, here, residual, response))
 
+    def moved(before: Array) -> BoolArray:
+        """Whether a step was not short; a run that is not finite ends there."""
+        old, new = (model.retract(prior.state, e) for e in (before, step.correction))
+        if settings.stop == "relative_norm":
+            change, size = np.linalg.norm(new - old, axis=-1), np.linalg.norm(new, axis=-1)
+            return np.asarray(change > settings.tolerance * size)
+        change = np.abs(model.difference(new, old))
+        return np.asarray((change > settings.tolerance * np.sqrt(step.variance)).any(-1))
 
-def _moved(model: Model, rule: _Rule, before: Array, after: Array, variance: Array) -> BoolArray:
-    """Runs whose step was not short; one that is not finite ends there."""
-    if rule.stop == "relative_norm":
-        change, size = np.linalg.norm(after - before, axis=-1), np.linalg.norm(after, axis=-1)
-        return np.asarray(change > rule.tolerance * size)
-    change = np.abs(model.difference(after, before))
-    return np.asarray((change > rule.tolerance * np.sqrt(variance)).any(-1))
+    count = iterate(step.correction, again, moved, settings.iterations)
+    return model.retract(prior.state, step.correction), count
 
 
 def _joseph(model: Model, prior: _Prior, step: _Step) -> Array:

@@ -4,18 +4,18 @@ The cost is twice the negative logarithm of the posterior density: the normalise
 prior's error and of the residuals. Its minimum is the maximum a posteriori estimate.
 """
 
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.replay.replay_model import ReplayModel
-from debrisest.filters.scaled import scaled_inverse
+from debrisest.arrays import Array, BoolArray
+from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.replay_model import ReplayModel
 
 _CHUNK = 8  # epochs whose derivatives are held at a time
 
 
-class Evidence(NamedTuple):
+class MeasuredArc(NamedTuple):
     """All that is known: prior ``(run, n)`` and its information, measurements and weights.
 
     `information` is (run, n_e, n_e) in the plain chart; `measured` (run, time, m) is divided by its
@@ -43,10 +43,12 @@ class Linearization(NamedTuple):
     """Normalised, not weighted, (run, epoch, m); zero where nothing is measured."""
 
 
-def weigh(model: ReplayModel, prior: Array, covariance: Array, measured: Array) -> Evidence:
+def measured_arc(
+    model: ReplayModel, prior: Array, covariance: Array, measured: Array
+) -> MeasuredArc:
     """Gather prior ``(run, n)``, its covariance and ``measured (run, time, m)``, NaN = missing."""
     seen = ~np.isnan(measured)
-    return Evidence(
+    return MeasuredArc(
         prior=prior,
         information=scaled_inverse(covariance),
         measured=np.where(seen, measured / model.sigma, 0.0),
@@ -55,27 +57,27 @@ def weigh(model: ReplayModel, prior: Array, covariance: Array, measured: Array) 
     )
 
 
-def linearize(model: ReplayModel, evidence: Evidence, state: Array, last: int) -> Linearization:
+def linearize(model: ReplayModel, arc: MeasuredArc, state: Array, last: int) -> Linearization:
     """Linearise the cost of epochs 0 to ``last`` at ``state (run, n)`` of epoch 0."""
     states, sensitivity = model.trajectory(state, 0, last)
-    offset = model.plain_difference(evidence.prior, state)
-    gradient = (evidence.information @ offset[..., None])[..., 0]
+    offset = model.plain_difference(arc.prior, state)
+    gradient = (arc.information @ offset[..., None])[..., 0]
     cost = (offset * gradient).sum(-1)
-    information = evidence.information.copy()
-    residual = np.empty((len(state), last + 1, evidence.measured.shape[-1]))
+    information = arc.information.copy()
+    residual = np.empty((len(state), last + 1, arc.measured.shape[-1]))
     for begin in range(0, last + 1, _CHUNK):
         part = slice(begin, min(begin + _CHUNK, last + 1))
         predicted, derivative = model.rows(
             states[:, part], sensitivity[:, part], 0, np.arange(part.start, part.stop)
         )
-        residual[:, part] = evidence.measured[:, part] - predicted / model.sigma
+        residual[:, part] = arc.measured[:, part] - predicted / model.sigma
         terms = normal_equations(
-            derivative / model.sigma[:, None], residual[:, part], evidence.weight[:, part]
+            derivative / model.sigma[:, None], residual[:, part], arc.weight[:, part]
         )
         information += terms[0]
         gradient += terms[1]
         cost += terms[2]
-    residual[~evidence.seen[:, : last + 1]] = 0.0
+    residual[~arc.seen[:, : last + 1]] = 0.0
     return Linearization(
         state=state.copy(),
         cost=cost,
@@ -96,18 +98,3 @@ def normal_equations(
     weighted = (weight * residual).reshape(runs, -1, 1)
     transposed = np.swapaxes(flat, -1, -2)
     return transposed @ flat, (transposed @ weighted)[..., 0], (weighted**2).sum((-2, -1))
-
-
-Arrays = TypeVar("Arrays", bound=tuple[Any, ...])
-
-
-def take(arrays: Arrays, runs: IntArray) -> Arrays:
-    """Return some runs of all the arrays."""
-    return type(arrays)(*(array[runs] for array in arrays))
-
-
-def put(arrays: Arrays, runs: IntArray, part: Arrays) -> Arrays:
-    """Replace some runs of all the arrays, in place."""
-    for array, values in zip(arrays, part):
-        array[runs] = values
-    return arrays

@@ -4,9 +4,10 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.filters import weights
-from debrisest.filters.replay.evidence import Evidence, Linearization, linearize, put, take
 from debrisest.filters.replay.gauss_newton import Solution, gauss_newton, move
-from debrisest.filters.replay.replay_model import ReplayModel
+from debrisest.filters.replay.measured_arc import Linearization, MeasuredArc, linearize
+from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.runs import put, take
 
 _EARLY_FRAMES, _SOFT_FRAMES = 10, 3
 _EARLY_PASSES = 3
@@ -14,7 +15,7 @@ _EARLY_PASSES = 3
 
 def robust_newton(
     model: ReplayModel,
-    evidence: Evidence,
+    arc: MeasuredArc,
     starts: list[Array],
     last: int,
     frames: int,
@@ -24,25 +25,25 @@ def robust_newton(
 
     Passes with Cauchy's weights, then one with hard rejection; in the first few frames, where a
     hard decision could be wrong for good, all passes are soft. Of several ``starts (run, n)`` each
-    run keeps the one that ends with the least loss. The weights in `evidence` are replaced.
+    run keeps the one that ends with the least loss. The weights in `arc` are replaced.
     """
-    best, weight, loss = _settle(model, evidence, starts[0], last, frames, iterations)
+    best, weight, loss = _settle(model, arc, starts[0], last, frames, iterations)
     for start in starts[1:]:
-        other, other_weight, other_loss = _settle(model, evidence, start, last, frames, iterations)
+        other, other_weight, other_loss = _settle(model, arc, start, last, frames, iterations)
         runs = np.flatnonzero(~(loss <= other_loss))
         put(best.at, runs, take(other.at, runs))
         best.step[runs], best.decrement[runs] = other.step[runs], other.decrement[runs]
         weight[runs], loss[runs] = other_weight[runs], other_loss[runs]
-    evidence.weight[:, : last + 1] = weight
+    arc.weight[:, : last + 1] = weight
     return best
 
 
 def _settle(
-    model: ReplayModel, evidence: Evidence, start: Array, last: int, frames: int, iterations: int
+    model: ReplayModel, arc: MeasuredArc, start: Array, last: int, frames: int, iterations: int
 ) -> tuple[Solution, Array, Array]:
     """Solution from one start, its weights and its loss."""
-    seen = evidence.seen[:, : last + 1]
-    weighted = evidence._replace(weight=evidence.weight.copy())
+    seen = arc.seen[:, : last + 1]
+    weighted = arc._replace(weight=arc.weight.copy())
     residual = linearize(model, weighted, start, last).residual
     passes = [weights.cauchy] * (_EARLY_PASSES if frames <= _EARLY_FRAMES else 1)
     passes.append(weights.cauchy if frames <= _SOFT_FRAMES else weights.hard)
@@ -51,10 +52,11 @@ def _settle(
         weighted.weight[:, : last + 1] = weight
         solution = gauss_newton(model, weighted, start, last, iterations)
         start, residual = move(model, solution.at.state, solution.step), solution.at.residual
-    return solution, weight, _loss(model, evidence, solution.at)
+    return solution, weight, _loss(model, arc, solution.at)
 
 
-def _loss(model: ReplayModel, evidence: Evidence, at: Linearization) -> Array:
-    offset = model.plain_difference(evidence.prior, at.state)
-    prior = (offset[:, None] @ evidence.information @ offset[..., None])[:, 0, 0]
-    return np.asarray(prior + weights.cauchy_loss(at.residual))
+def _loss(model: ReplayModel, arc: MeasuredArc, at: Linearization) -> Array:
+    offset = model.plain_difference(arc.prior, at.state)
+    prior = (offset[:, None] @ arc.information @ offset[..., None])[:, 0, 0]
+    squares = (at.residual / weights.CAUCHY_SCALE) ** 2
+    return np.asarray(prior + weights.cauchy_loss(squares).sum((-2, -1)))

@@ -9,7 +9,7 @@ from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics.pointing import camera_axes
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Rows
+from debrisest.filters.landmark_model import LandmarkModel, Rows
 from debrisest.problems.camera_range import model as motion
 from debrisest.problems.camera_range.model import (
     ATTITUDE_ERROR,
@@ -17,8 +17,8 @@ from debrisest.problems.camera_range.model import (
     CORE_ERRORS,
     POSITION,
     POSITION_ERROR,
+    CameraRangeGeometry,
     Q,
-    Setup,
     error_names,
     turn_by_position,
 )
@@ -28,7 +28,7 @@ _NEAREST = 0.5
 """Depth, m, in place of a smaller or negative one, which no camera shows."""
 
 
-def landmark_model(known: Setup) -> LandmarkModel:
+def landmark_model(known: CameraRangeGeometry) -> LandmarkModel:
     """Return the problem for the landmark filters."""
     ranged = known.range_model == "landmark"
     pixel = np.full(2, known.pixel_sigma)
@@ -53,7 +53,7 @@ def landmark_model(known: Setup) -> LandmarkModel:
     )
 
 
-def rows(known: Setup, cores: Array, points: Array, epochs: IntArray) -> Rows:
+def rows(known: CameraRangeGeometry, cores: Array, points: Array, epochs: IntArray) -> Rows:
     """Pixels and ranges of cores ``(run, epoch, n)`` and points ``(run, 1 or epoch, N, 3)``."""
     to_camera, turn, seen_from, arm = _geometry(known, cores, points, epochs)
     point = seen_from.copy()
@@ -82,7 +82,7 @@ def rows(known: Setup, cores: Array, points: Array, epochs: IntArray) -> Rows:
 
 
 def _geometry(
-    known: Setup, cores: Array, points: Array, epochs: IntArray
+    known: CameraRangeGeometry, cores: Array, points: Array, epochs: IntArray
 ) -> tuple[Array, Array, Array, Array]:
     """``R_ch`` and A ``(..., 3, 3)``, points from the camera and from the centre in its axes."""
     rho = cores[..., POSITION]
@@ -102,7 +102,7 @@ def _seen(to_camera: Array, rho: Array) -> Array:
     return (to_camera @ rho[..., None])[..., 0]
 
 
-def _by_position(known: Setup, cores: Array, to_camera: Array, arm: Array) -> Array:
+def _by_position(known: CameraRangeGeometry, cores: Array, to_camera: Array, arm: Array) -> Array:
     """Derivative ``(..., N or 1, 3, 3)`` of a point in the camera by the chaser's position."""
     if known.attitude == "known":
         return -to_camera[..., None, :, :]
@@ -112,7 +112,7 @@ def _by_position(known: Setup, cores: Array, to_camera: Array, arm: Array) -> Ar
     return np.asarray(result)
 
 
-def _with_range(known: Setup, found: Rows, cores: Array) -> Rows:
+def _with_range(known: CameraRangeGeometry, found: Rows, cores: Array) -> Rows:
     """Add the range to the centre of mass, or to a surface that is nearer by a constant."""
     rho = cores[..., POSITION]
     distance = np.linalg.norm(rho, axis=-1, keepdims=True)
@@ -143,7 +143,9 @@ def _with_ranges(found: Rows, cores: Array, points: Array) -> Rows:
     )
 
 
-def place(known: Setup, cores: Array, shown: Array, epochs: IntArray) -> tuple[Array, Array, Array]:
+def place(
+    known: CameraRangeGeometry, cores: Array, shown: Array, epochs: IntArray
+) -> tuple[Array, Array, Array]:
     """Points ``(run, N, 3)`` at the depth of the centre of mass, on the line of their pixels.
 
     With cores ``(run, N, n)``, pixels ``(run, N, 2 or 3)`` and epochs ``(run, N)``, one each; and

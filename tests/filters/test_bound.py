@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from debrisest.assessment.bound import efficient
 from debrisest.assessment.consistency import interval, normalized_square
+from debrisest.filters.bound.motion import efficient
 
 F = np.array([[1.0, 0.4], [-0.2, 0.9]])
 H = np.array([[1.0, 0.2], [0.0, 1.5]])

@@ -1,8 +1,9 @@
 """Cramer-Rao bound of a landmark model, as the errors of the efficient estimator.
 
-As in `debrisest.assessment.bound`, the estimator is linearised at the truth and given the noise of
-the very measurements that the others have seen. Here the information is gathered frame by frame, so
-that the memory does not grow with the number of landmarks times that of frames.
+As in `debrisest.filters.bound.motion`, the estimator is linearised at the truth and given the noise
+of the very measurements that the others have seen. Here the information is gathered frame by frame,
+so that the memory does not grow with the number of landmarks times that of frames, and a false
+match is left out with its whole landmark.
 """
 
 from collections.abc import Sequence
@@ -11,12 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.filters.landmarks.landmark_model import LandmarkModel, Rows, Sights
-from debrisest.filters.scaled import scaled_inverse
+from debrisest.filters.landmark_model import LandmarkModel, Observations, Rows
+from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.weights import FALSE_MATCH
 
 _BLOCK = 16  # frames whose rows are held at a time
-_OUTLIER = 7.0
-"""A measurement so many sigmas off is a false match, which the efficient estimator recognises."""
 
 
 class LandmarkBound(NamedTuple):
@@ -35,7 +35,7 @@ def landmark_bound(
     points: Array,
     parameters: Array,
     covariance: Array,
-    sights: Sights,
+    observed: Observations,
     keep: Sequence[int] = (),
 ) -> LandmarkBound:
     """Return the errors of the efficient estimator for the runs of an experiment.
@@ -44,10 +44,10 @@ def landmark_bound(
     the first guess with the covariance (run, n_x + 3 N, n_x + 3 N) of it and of the points, whose
     first guess is taken as exact. ``keep`` lists the epochs whose covariance is wanted.
     """
-    runs, epochs = sights.seen.shape[:2]
-    start, freedom = model.start(model.parameters(core))
+    runs, epochs = observed.seen.shape[:2]
+    start, by_parameters = model.start(model.parameters(core))
     cores, transitions = model.trajectory(start, epochs - 1)
-    n_x, extra = freedom.shape[-1], 3 * model.landmarks
+    n_x, extra = by_parameters.shape[-1], 3 * model.landmarks
     information = scaled_inverse(covariance)
     offset = np.zeros((runs, n_x + extra))
     offset[:, :n_x] = parameters - model.parameters(core)
@@ -58,9 +58,9 @@ def landmark_bound(
     for first in range(0, epochs, _BLOCK):
         part = np.arange(first, min(first + _BLOCK, epochs))
         rows = model.rows(cores[:, part], points[:, None], part)
-        response, residual = _whitened(model, rows, sights.at(slice(None), part))
+        response, residual = _whitened(model, rows, observed.at(slice(None), part))
         for i, k in enumerate(part):
-            by_start = transitions[:, k] @ freedom
+            by_start = transitions[:, k] @ by_parameters
             h = np.concatenate(
                 [response[:, i, :, :-extra] @ by_start, response[:, i, :, -extra:]], -1
             )
@@ -76,11 +76,11 @@ def landmark_bound(
     return LandmarkBound(error, sigma, kept)
 
 
-def _whitened(model: LandmarkModel, rows: Rows, sights: Sights) -> tuple[Array, Array]:
+def _whitened(model: LandmarkModel, rows: Rows, observed: Observations) -> tuple[Array, Array]:
     """Rows (run, epoch, m, n_c + 3 N) and residuals of unit noise, zero where nothing counts."""
-    residual = (sights.shown - rows.shown) / model.sigma
-    near = (np.abs(residual) < _OUTLIER) | ~sights.seen
-    used = sights.seen & near.all(-1, keepdims=True)
+    residual = (observed.shown - rows.shown) / model.sigma
+    near = (np.abs(residual) < FALSE_MATCH) | ~observed.seen
+    used = observed.seen & near.all(-1, keepdims=True)
     runs, epochs, landmarks, each = used.shape
     count, n_c = landmarks * each, model.errors
     scale = (used / model.sigma)[..., None]
@@ -89,12 +89,12 @@ def _whitened(model: LandmarkModel, rows: Rows, sights: Sights) -> tuple[Array, 
     row = np.arange(count).reshape(landmarks, each, 1)
     column = n_c + np.arange(3 * landmarks).reshape(landmarks, 1, 3)
     flat[:, :, row, column] = rows.by_point * scale
-    weight = sights.common_seen / model.common_sigma
+    weight = observed.common_seen / model.common_sigma
     flat[:, :, count:, :n_c] = rows.common_by_core * weight[..., None]
     result = np.concatenate(
         [
             np.where(used, residual, 0.0).reshape(runs, epochs, count),
-            np.where(sights.common_seen, (sights.common - rows.common) * weight, 0.0),
+            np.where(observed.common_seen, (observed.common - rows.common) * weight, 0.0),
         ],
         axis=-1,
     )

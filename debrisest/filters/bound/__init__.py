@@ -1,0 +1,1 @@
+"""Cramer-Rao bounds, as the errors of efficient estimators."""

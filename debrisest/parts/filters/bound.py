@@ -1,0 +1,102 @@
+"""Cramer-Rao bounds as estimators: linearised at the truth, fed with the same data."""
+
+from typing import Literal
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.filters.association.single import associated
+from debrisest.filters.association.weights import Validation
+from debrisest.filters.bound.landmarks import landmark_bound
+from debrisest.filters.bound.motion import paired_errors
+from debrisest.filters.estimates import Estimates
+from debrisest.filters.landmark_model import LandmarkModel, core_of, joined, points_of, split
+from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.scan_model import ScanModel
+from debrisest.parts.filters.association import counting
+from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
+from debrisest.roles import FilterPart, Given
+
+
+class Efficient(FilterPart):
+    """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
+
+    needs = ("replay_model",)
+    kind: Literal["efficient"]
+    smoother: bool = False
+    keep_s: KeptTimes = []
+
+    def run(self, model: ReplayModel, given: Given) -> Estimates:
+        """Return the truth moved by the errors of the efficient estimator."""
+        truth, kept = given.known_truth, _kept(self.keep_s, given)
+        errors = paired_errors(
+            model, truth[:, 0], given.state, given.covariance[0], given.measured, kept
+        )
+        error, sigma, covariance = errors[3:] if self.smoother else errors[:3]
+        chart = model.chart(truth)
+        state = model.displace(truth, (chart @ error[..., None])[..., 0])
+        to_state = model.inverse_chart(state[:, kept]) @ chart[:, kept]
+        spread = to_state @ covariance @ np.swapaxes(to_state, -1, -2)
+        return _estimates(state, sigma, spread, kept)
+
+
+class LandmarkBound(FilterPart):
+    """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
+
+    needs = ("landmark_model",)
+    kind: Literal["landmark_bound"]
+    keep_s: KeptTimes = []
+
+    def run(self, model: LandmarkModel, given: Given) -> Estimates:
+        """Return the truth moved by the errors of the efficient estimator."""
+        truth, kept = given.known_truth, _kept(self.keep_s, given)
+        core, points = core_of(model, truth), points_of(model, truth)
+        held, n_c = model.held, model.errors
+        bound = landmark_bound(
+            model,
+            core[:, 0],
+            points[:, 0],
+            model.parameters(core_of(model, given.state)),
+            given.covariance[:, held:, held:],
+            split(model, given.measured),
+            kept,
+        )
+        moved = points + bound.error[..., n_c:].reshape(points.shape)
+        state = joined(model.retract(core, bound.error[..., :n_c]), moved)
+        return _estimates(state, bound.sigma, bound.covariance, kept)
+
+
+class LinearisedAtTruth(FilterPart):
+    """The posterior bound along each run (Tichavsky et al. 1998) as an estimator.
+
+    Known detections, linearised at the truth.
+    """
+
+    needs = ("scan_model",)
+    kind: Literal["linearised_at_truth"]
+    keep_s: KeptTimes = []
+
+    def run(self, model: ScanModel, given: Given) -> Estimates:
+        """Return the truth moved by the errors of the efficient estimator."""
+        found = associated(
+            *(model, given.state, given.covariance, given.measured, Validation()),
+            method="known",
+            truth=given.known_truth,
+            keep=kept_epochs(self.keep_s, given.clock),
+        )
+        return counting(found, "repairs")
+
+
+def _kept(times: list[float], given: Given) -> list[int]:
+    return sorted({*kept_epochs(times, given.clock), given.measured.shape[1] - 1})
+
+
+def _estimates(state: Array, sigma: Array, covariance: Array, kept: list[int]) -> Estimates:
+    """Estimates of a bound, which judges no innovations."""
+    runs, epochs = state.shape[:2]
+    return Estimates(
+        *(state, sigma, covariance, np.array(kept, dtype=np.int64)),
+        nis=np.full((runs, epochs), np.nan),
+        nis_dof=np.zeros((runs, epochs), dtype=np.int64),
+        status=np.array(["linearised at the truth"] * runs),
+    )
