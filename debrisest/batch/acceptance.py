@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.batch.arc import UNKNOWNS, Arc, along
 from debrisest.batch.evidence import Evidence, Told
@@ -57,7 +57,7 @@ class Fit(NamedTuple):
 def tested(evidence: Evidence, arc: Arc) -> Fit:
     """Return the tests of an arc."""
     q, rate = along(arc, evidence.times)
-    told = evidence.told(q, rate)
+    told = evidence.settled(q).told(q, rate)
     fitted = UNKNOWNS - evidence.unknowns_fixed
     dof = max(float(evidence.dof.sum()) - fitted, 1.0)
     excess = max(float(told.chi2.sum()) / dof, 1e-12)
@@ -72,17 +72,17 @@ def tested(evidence: Evidence, arc: Arc) -> Fit:
     return Fit(dof * excess, dof, worst / 3.0, limits, offset, float(limit))
 
 
-def _blocks(evidence: Evidence) -> tuple[Array, Array]:
+def _blocks(evidence: Evidence) -> tuple[IntArray, Array]:
     """Return the block of each epoch, equal shares of what is measured, and the blocks' limits."""
     share = np.cumsum(evidence.dof) / max(float(evidence.dof.sum()), 1.0)
     count = min(_BLOCKS, max(len(evidence.times) // 3, 1))
-    owner = np.minimum((share * count * (1.0 - 1e-12)).astype(int), count - 1)
+    owner = np.minimum((share * count * (1.0 - 1e-12)).astype(np.int64), count - 1)
     starts = np.searchsorted(owner, np.arange(count))
     ends = evidence.times[[*np.minimum(starts, len(owner) - 1), -1]]
     return owner, ends
 
 
-def _offsets(told: Told, owner: Array, count: int) -> Array:
+def _offsets(told: Told, owner: IntArray, count: int) -> Array:
     """Chi-square (block,) of the blocks' mean offsets, three degrees of freedom each."""
     pull, hold = np.zeros((count, 3)), np.zeros((count, 3, 3))
     np.add.at(pull, owner, told.pull)

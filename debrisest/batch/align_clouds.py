@@ -8,7 +8,6 @@ Procrustes analysis) until the cloud has grown to all that hangs together.
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.attitude import quaternion
 from debrisest.batch.free_points import FreePoints
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.tracks import Tracks
@@ -19,7 +18,12 @@ _ENOUGH = 0.02  # of the points' standard deviation, the change at which the clo
 
 
 def align_clouds(tracks: Tracks) -> FreePoints:
-    """Return the tracks with places of the points; those that hang on nothing have no weight."""
+    """Return the tracks with places of the points; those that hang on nothing have no weight.
+
+    They can join once a law of motion tells the attitude of all epochs.
+    """
+    if not len(tracks.times):
+        return FreePoints(tracks, np.zeros((tracks.weight.shape[1], 3)))
     first = int(np.argmax(_spread(tracks)))
     model, known = tracks.centred()[first], tracks.seen[first]
     robust = tracks.weight
@@ -33,7 +37,7 @@ def align_clouds(tracks: Tracks) -> FreePoints:
         settled = cloud.settled(q[told])
         now = settled.tracks.weight.sum(axis=0) > 0.0
         change = _change(settled, model, known & now)
-        robust = _robust(tracks, settled.model, q, told & True)
+        robust = _robust(tracks, settled.model, q, told)
         at_rest = np.array_equal(now, known) and change < _ENOUGH
         model, known = settled.model, now
         if at_rest:
@@ -65,8 +69,3 @@ def _change(cloud: FreePoints, before: Array, both: Array) -> float:
     moved = np.linalg.norm(new - old, axis=-1)
     sigma = np.sqrt(np.diag(cloud.inverse_laplacian)[both])
     return float(np.max(moved / np.maximum(sigma, 1e-300)))
-
-
-def cloud_attitudes(cloud: FreePoints) -> Array:
-    """Return attitudes ``q_if (time, 4)`` of the epochs that tell them, NaN elsewhere."""
-    return quaternion.normalize(cloud.seen().q)

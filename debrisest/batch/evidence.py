@@ -77,6 +77,9 @@ class Evidence(Protocol):
     def within(self, epochs: BoolArray) -> Self:
         """Return the evidence of some epochs."""
 
+    def settled(self, q: Array) -> Self:
+        """Return it with its nuisances at their best for attitudes (time, 4)."""
+
     def seen(self) -> Seen:
         """Return attitudes of single epochs."""
 

@@ -44,7 +44,7 @@ class FreePoints:
         """Three for each point but one, less the share of the points' places (time,)."""
         seen = self.known.dof
         rank = np.linalg.matrix_rank(self.inverse_laplacian, hermitian=True)
-        return seen * max(1.0 - 3.0 * rank / max(float(seen.sum()), 1.0), 0.0)
+        return np.asarray(seen * max(1.0 - 3.0 * rank / max(float(seen.sum()), 1.0), 0.0))
 
     @cached_property
     def inverse_laplacian(self) -> Array:
@@ -70,7 +70,9 @@ class FreePoints:
         told = settled.known.told(course.q, course.rate)
         normal = summed(told, course.turn_by)
         cross = settled.cross(course)
-        spent = np.tensordot(cross, np.tensordot(self.inverse_laplacian, cross, 1), ((0, 1), (0, 1)))
+        spent = np.tensordot(
+            cross, np.tensordot(self.inverse_laplacian, cross, 1), ((0, 1), (0, 1))
+        )
         return normal._replace(hold=normal.hold - spent)
 
     def cross(self, course: Course) -> Array:

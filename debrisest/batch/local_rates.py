@@ -112,13 +112,15 @@ def _fit(
         robust = 1.0 / (1.0 + chi2 / (9.0 * typical))
     inverse = np.linalg.pinv(hold, 1e-12, hermitian=True)
     dof = max(3.0 * len(times) - 3.0 * (degree + 1), 1.0)
-    excess = float(np.median(chi2)) / 2.366 * 3.0 * len(times) / dof
+    excess = float(chi2.sum()) / dof
     offset, rate = solution[0], solution[1] / span
     attitude = quaternion.multiply(centre, quaternion.exp(offset))
     return middle, attitude, rate, inverse[3:6, 3:6] / span**2, excess
 
 
-def _weighted(powers: Array, turn: Array, weight: Array, plain: Array) -> tuple[Array, Array, Array]:
+def _weighted(
+    powers: Array, turn: Array, weight: Array, plain: Array
+) -> tuple[Array, Array, Array]:
     """Return coefficients (degree + 1, 3), their information, and chi2 of each epoch."""
     count = powers.shape[1]
     hold = np.einsum("ka,kb,kij->aibj", powers, powers, weight).reshape(3 * count, 3 * count)

@@ -39,7 +39,7 @@ class KnownPoints:
     @cached_property
     def dof(self) -> Array:
         """Three for each point but one (time,)."""
-        return 3.0 * np.maximum(self.tracks.seen.sum(axis=1) - 1.0, 0.0)
+        return np.asarray(3.0 * np.maximum(self.tracks.seen.sum(axis=1) - 1.0, 0.0))
 
     @cached_property
     def body(self) -> Array:
@@ -77,6 +77,10 @@ class KnownPoints:
     def within(self, epochs: BoolArray) -> Self:
         """Return the evidence of some epochs."""
         return type(self)(self.tracks.within(epochs), self.model)
+
+    def settled(self, q: Array) -> Self:
+        """Return itself: it has no nuisances."""
+        return self
 
     def seen(self) -> Seen:
         """Return the least-squares attitudes (Wahba) of epochs that tell all three directions."""

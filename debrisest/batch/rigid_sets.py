@@ -23,8 +23,8 @@ class Pairs(NamedTuple):
     """Epochs in which both are seen."""
 
 
-def pairs(tracks: Tracks) -> Pairs:
-    """Return how constant the distances are."""
+def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
+    """Return how constant the distances are: about their median, or those of a known body."""
     features = tracks.weight.shape[1]
     noise, common = np.full((features, features), np.nan), np.zeros((features, features))
     for i in range(features):
@@ -33,7 +33,10 @@ def pairs(tracks: Tracks) -> Pairs:
         common[i] = both.sum(axis=0)
         enough = (common[i] >= _FEWEST_COMMON) & (np.arange(features) != i)
         shown = np.where(both, distance, np.nan)[:, enough]
-        deviation = np.abs(shown - np.nanmedian(shown, axis=0))
+        middle = np.nanmedian(shown, axis=0)
+        if model is not None:
+            middle = np.linalg.norm(model - model[i], axis=-1)[enough]
+        deviation = np.abs(shown - middle)
         noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * np.nanmedian(deviation, axis=0)
     return Pairs(noise, common)
 

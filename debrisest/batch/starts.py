@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from debrisest.arrays import Array, IntArray
 from debrisest.batch.arc import Arc
 from debrisest.batch.local_rates import Local
 from debrisest.batch.momentum_start import inertia_start
 from debrisest.dynamics import log_inertia
-from debrisest.arrays import Array, IntArray
 
 _MOST_WINDOWS = 4
 _GUESSES = np.array(

@@ -51,7 +51,7 @@ def tracks(times: Array, points: Array, sigma: Array | float) -> Tracks:
     ``sigma``, m, is a number or broadcasts to (time, feature) or (time, feature, 3); of three
     components the mean square counts.
     """
-    seen = np.isfinite(points).all(axis=-1)
+    seen = np.asarray(np.isfinite(points).all(axis=-1))
     sigma = np.asarray(sigma, dtype=np.float64)
     if sigma.ndim == 3:
         sigma = np.sqrt(np.mean(sigma**2, axis=-1))

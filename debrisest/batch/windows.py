@@ -4,15 +4,15 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from debrisest.arrays import Array
 from debrisest.batch.acceptance import Fit, tested
-from debrisest.batch.arc import TURN, Arc, along, course, moved
+from debrisest.batch.arc import Arc, along, course, moved
 from debrisest.batch.descent import Descent, covariance, descend
 from debrisest.batch.evidence import Evidence
 
 _SURE_TURN = 0.35  # rad, sigma of the attitude up to which a window may grow at once
 _LEAST_GROWTH = 0.25  # of the window's length, to each side
 _WILD = 2.0  # chi2/dof of a window, in units of the noise, that has gone wrong
+_WIDER = 1.2  # by how much chi2/dof may grow with more points
 _GATE = 25.0  # normalised square, three degrees of freedom: once in 60 000 points
 _FIRST_GATE = 60.0
 
@@ -52,8 +52,16 @@ def grow(evidence: Evidence, arc: Arc, half: float, gates: bool = True) -> Growt
         low, high = _wider(evidence, found, low, high)
 
 
+def widened(growth: Growth, wider: Evidence) -> Growth:
+    """Return the fit of more evidence over the same span, unless it disagrees."""
+    found, kept = _fitted(wider, growth.found.arc, True)
+    fit = tested(kept, found.arc)
+    agrees = fit.steady and fit.excess < max(_WIDER, _WIDER * growth.fit.excess)
+    return growth._replace(found=found, fit=fit, evidence=kept) if agrees else growth
+
+
 def _fitted(window: AnyEvidence, arc: Arc, gates: bool) -> tuple[Descent, AnyEvidence]:
-    """Return the fit of a window and what it is made of: all points first, then without outliers."""
+    """Return the fit of a window, first with all points, then without outliers."""
     found = descend(window, arc, 12)
     kept = window
     if not gates:
@@ -86,13 +94,3 @@ def _at_middle(growth: Growth) -> Growth:
     arc = moved(growth.found.arc, 0.5 * (low + high))
     found = descend(growth.evidence, arc, 10)
     return growth._replace(found=found, fit=tested(growth.evidence, found.arc))
-
-
-def predicted_turn_sigma(found: Descent, times: Array, fixed: int) -> Array:
-    """Standard deviation of the attitude (time, 3), rad, in inertial axes."""
-    derivative = course(found.arc, times).turn_by
-    spread = derivative @ covariance(found.hold, fixed) @ np.swapaxes(derivative, -1, -2)
-    return np.asarray(np.sqrt(np.diagonal(spread, 0, -2, -1)))
-
-
-__all__ = ["TURN", "Growth", "grow", "predicted_turn_sigma"]
