@@ -1,0 +1,1 @@
+"""Batch estimation of one tumbling body's motion from points, attitudes or rates."""

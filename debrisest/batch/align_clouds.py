@@ -1,0 +1,71 @@
+"""Clouds of points of unknown places laid over each other, without any dynamics.
+
+The epoch that shows most points is the first cloud. Attitudes of the epochs that share points with
+it, and places of all points of these epochs at these attitudes, follow in turn (generalised
+Procrustes analysis) until the cloud has grown to all that hangs together.
+"""
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.batch.free_points import FreePoints
+from debrisest.batch.point_sums import KnownPoints
+from debrisest.batch.tracks import Tracks
+
+_ROUNDS = 60
+_CAUCHY = 9.0
+_ENOUGH = 0.02  # of the points' standard deviation, the change at which the cloud is at rest
+
+
+def align_clouds(tracks: Tracks) -> FreePoints:
+    """Return the tracks with places of the points; those that hang on nothing have no weight.
+
+    They can join once a law of motion tells the attitude of all epochs.
+    """
+    if not len(tracks.times):
+        return FreePoints(tracks, np.zeros((tracks.weight.shape[1], 3)))
+    first = int(np.argmax(_spread(tracks)))
+    model, known = tracks.centred()[first], tracks.seen[first]
+    robust = tracks.weight
+    for _ in range(_ROUNDS):
+        visible = tracks._replace(weight=np.where(known, robust, 0.0))
+        q = KnownPoints(visible, model).seen().q
+        told = np.isfinite(q[:, 0])
+        cloud = FreePoints(Tracks(*(part[told] for part in tracks._replace(weight=robust))), model)
+        if not told.any():
+            break
+        settled = cloud.settled(q[told])
+        now = settled.tracks.weight.sum(axis=0) > 0.0
+        change = _change(settled, model, known & now)
+        robust = _robust(tracks, settled.model, q, told)
+        at_rest = np.array_equal(now, known) and change < _ENOUGH
+        model, known = settled.model, now
+        if at_rest:
+            break
+    return FreePoints(tracks._replace(weight=np.where(known, tracks.weight, 0.0)), model)
+
+
+def _spread(tracks: Tracks) -> Array:
+    """Second largest moment of the points of each epoch, which a line has not (time,)."""
+    centred = tracks.centred() * np.sqrt(tracks.weight)[..., None]
+    return np.asarray(np.linalg.eigvalsh(np.swapaxes(centred, -1, -2) @ centred)[:, 1])
+
+
+def _robust(tracks: Tracks, model: Array, q: Array, told: Array) -> Array:
+    """Weights (time, feature), less for points that are far off (Cauchy)."""
+    attitude = np.where(told[:, None], q, [1.0, 0.0, 0.0, 0.0])
+    residual = np.nan_to_num(KnownPoints(tracks, model).residuals(attitude))
+    square = np.sum(residual**2, axis=-1) * tracks.weight
+    weight = tracks.weight / (1.0 + square / _CAUCHY)
+    return np.where(told[:, None], weight, tracks.weight)
+
+
+def _change(cloud: FreePoints, before: Array, both: Array) -> float:
+    """Largest change of places, in standard deviations, whatever the cloud's frame does."""
+    if both.sum() < 3:
+        return np.inf
+    new, old = cloud.model[both], before[both]
+    new, old = new - new.mean(axis=0), old - old.mean(axis=0)
+    moved = np.linalg.norm(new - old, axis=-1)
+    sigma = np.sqrt(np.diag(cloud.inverse_laplacian)[both])
+    return float(np.max(moved / np.maximum(sigma, 1e-300)))

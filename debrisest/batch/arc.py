@@ -1,0 +1,97 @@
+"""An arc of torque-free motion: eleven unknowns at one epoch, and what they say of all others.
+
+The unknowns are the attitude ``q_if``, the rate in the feature frame ``f``, rad/s, and the inertia
+in ``f`` as five log-ratios (`debrisest.dynamics.log_inertia`). Their errors (11) are a rotation
+vector in inertial axes, applied from the left, and differences: an error of the attitude is the
+same at all epochs, and none of the rate.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.attitude import quaternion
+from debrisest.dynamics import log_inertia
+from debrisest.dynamics.inertia import principal_axes
+from debrisest.dynamics.torque_free import torque_free
+
+TURN, RATE, INERTIA = slice(0, 3), slice(3, 6), slice(6, 11)
+UNKNOWNS = 11
+_TURN_OF_STEP = 2e-5
+"""How far a difference's step turns the body at the end of the arc, about, rad."""
+
+
+class Arc(NamedTuple):
+    """Motion by its state at ``epoch``, s; leading axes of the arrays are copies."""
+
+    epoch: float
+    q: Array
+    """``q_if (..., 4)``."""
+    rate: Array
+    """In the feature frame, rad/s, (..., 3)."""
+    log_inertia: Array
+    """(..., 5)."""
+
+
+class Course(NamedTuple):
+    """An arc at given times, with its derivatives by the errors of the unknowns."""
+
+    q: Array
+    """(time, 4)."""
+    rate: Array
+    """(time, 3), rad/s."""
+    turn_by: Array
+    """(time, 3, 11), in inertial axes."""
+    rate_by: Array
+    """(time, 3, 11), in the feature frame."""
+
+
+def along(arc: Arc, times: Array) -> tuple[Array, Array]:
+    """Return ``q_if (..., time, 4)`` and rates ``(..., time, 3)`` at ``times (time,)``, s."""
+    moments, axes = principal_axes(log_inertia.inertia(arc.log_inertia))
+    q_fb = quaternion.from_matrix(axes)
+    rate_b = (arc.rate[..., None, :] @ axes)[..., 0, :]
+    q_ib, rates_b = torque_free(
+        times - arc.epoch, quaternion.multiply(arc.q, q_fb), rate_b, moments
+    )
+    q_if = quaternion.multiply(q_ib, quaternion.conjugate(q_fb)[..., None, :])
+    return q_if, rates_b @ np.swapaxes(axes, -1, -2)
+
+
+def course(arc: Arc, times: Array) -> Course:
+    """Return the motion and its derivatives, by forward differences of eight copies."""
+    step = _steps(arc, times)
+    shift = np.vstack([np.zeros(8), np.diag(step)])
+    copies = Arc(
+        arc.epoch,
+        np.broadcast_to(arc.q, (9, 4)),
+        arc.rate + shift[:, :3],
+        arc.log_inertia + shift[:, 3:],
+    )
+    q, rate = along(copies, times)
+    turn = quaternion.multiply(q[1:], quaternion.conjugate(q[0]))
+    turn_by, rate_by = np.zeros((2, len(times), 3, UNKNOWNS))
+    turn_by[..., TURN] = np.eye(3)
+    turn_by[..., 3:] = np.moveaxis(quaternion.log(turn), 0, -1) / step
+    rate_by[..., 3:] = np.moveaxis(rate[1:] - rate[0], 0, -1) / step
+    return Course(q[0], rate[0], turn_by, rate_by)
+
+
+def displaced(arc: Arc, error: Array) -> Arc:
+    """Return the arc moved by errors (11)."""
+    q = quaternion.multiply(quaternion.exp(error[TURN]), arc.q)
+    return Arc(arc.epoch, q, arc.rate + error[RATE], arc.log_inertia + error[INERTIA])
+
+
+def moved(arc: Arc, epoch: float) -> Arc:
+    """Return the same motion by its state at another epoch, s."""
+    q, rate = along(arc, np.array([epoch]))
+    return Arc(epoch, quaternion.normalize(q[..., 0, :]), rate[..., 0, :], arc.log_inertia)
+
+
+def _steps(arc: Arc, times: Array) -> Array:
+    """Steps (8,) that turn the end of the arc by about as much each."""
+    span = 1.0 + np.abs(times - arc.epoch).max(initial=0.0)
+    turned = 1.0 + np.linalg.norm(arc.rate) * span
+    return np.repeat(_TURN_OF_STEP / np.array([span, turned]), (3, 5))

@@ -1,0 +1,92 @@
+"""Least squares of an arc's unknowns, by Levenberg and Marquardt, with a prior on the inertia."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.batch.arc import INERTIA, UNKNOWNS, Arc, along, course, displaced
+from debrisest.batch.evidence import Evidence, Normal
+
+PRIOR_SIGMA = 0.8
+"""Of each log-ratio of the inertia, about equal moments: a cube to a long rod."""
+_WIDEST = 6.0  # length of the log-ratios beyond which no body is looked for
+_SMALLEST_GAIN = 1e-3  # of the chi-square, where the descent ends
+_LEAST_DAMPING, _MOST_DAMPING = 1e-9, 1e8
+
+
+class Descent(NamedTuple):
+    """Where a descent has ended."""
+
+    arc: Arc
+    chi2: float
+    """Without the prior."""
+    hold: Array
+    """Information of the unknowns (11, 11), with the prior."""
+    settled: bool
+    """Whether no further step gains anything."""
+
+
+def descend(evidence: Evidence, arc: Arc, iterations: int = 30) -> Descent:
+    """Return the best arc near ``arc``."""
+    damping, settled = 1e-4, False
+    normal, cost = _normal(evidence, arc)
+    for _ in range(iterations):
+        step, gain = _step(normal, damping, evidence.unknowns_fixed)
+        if gain < _SMALLEST_GAIN:
+            settled = True
+            break
+        tried = displaced(arc, step)
+        if _cost(evidence, tried) < cost:
+            arc, damping = tried, max(0.1 * damping, _LEAST_DAMPING)
+            normal, cost = _normal(evidence, arc)
+        elif damping > _MOST_DAMPING:
+            break
+        else:
+            damping = max(10.0 * damping, 1e-6)
+    return Descent(arc, normal.chi2, normal.hold, settled)
+
+
+def covariance(hold: Array, fixed: int = 0) -> Array:
+    """Covariance (11, 11) of information (11, 11); that of the first ``fixed`` unknowns is zero."""
+    result = np.zeros_like(hold)
+    free = slice(fixed, None)
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(hold)[free], np.finfo(float).tiny))
+    both = scale[:, None] * scale
+    result[free, free] = both * np.linalg.pinv(both * hold[free, free], 1e-15, hermitian=True)
+    return result
+
+
+def _normal(evidence: Evidence, arc: Arc) -> tuple[Normal, float]:
+    normal = evidence.normal(course(arc, evidence.times))
+    weight = np.zeros(UNKNOWNS)
+    weight[INERTIA] = PRIOR_SIGMA**-2
+    pull = normal.pull.copy()
+    pull[INERTIA] -= arc.log_inertia * PRIOR_SIGMA**-2
+    held = Normal(normal.chi2, pull, normal.hold + np.diag(weight))
+    return held, normal.chi2 + _prior(arc)
+
+
+def _prior(arc: Arc) -> float:
+    return float(np.sum(arc.log_inertia**2)) / PRIOR_SIGMA**2
+
+
+def _cost(evidence: Evidence, arc: Arc) -> float:
+    """Chi-square with the prior, infinite where no body is looked for."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        if not np.linalg.norm(arc.log_inertia) < _WIDEST:
+            return np.inf
+        cost = evidence.chi2(*along(arc, evidence.times)) + _prior(arc)
+    return cost if np.isfinite(cost) else np.inf
+
+
+def _step(normal: Normal, damping: float, fixed: int) -> tuple[Array, float]:
+    """Step (11,), and by how much it should lower the chi-square."""
+    free = slice(fixed, None)
+    hold, pull = normal.hold[free, free], normal.pull[free]
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(hold), np.finfo(float).tiny))
+    scaled = scale[:, None] * hold * scale + damping * np.eye(len(scale))
+    step = np.zeros(UNKNOWNS)
+    step[free] = scale * np.linalg.solve(scaled, scale * pull)
+    gain = float(2.0 * step[free] @ pull - step[free] @ hold @ step[free])
+    return step, gain

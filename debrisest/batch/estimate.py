@@ -1,0 +1,165 @@
+"""Motion of a tumbling body from tracked points, attitudes or rates: the calls of this package.
+
+No simulation, start or tuning is needed. Times are in seconds and increase; they need not be
+evenly spaced, but the body should turn less than half a turn between most of them.
+"""
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray
+from debrisest.attitude import quaternion
+from debrisest.batch.align_clouds import align_clouds
+from debrisest.batch.arc import course
+from debrisest.batch.attitudes import Attitudes
+from debrisest.batch.free_points import FreePoints
+from debrisest.batch.local_rates import local_rates
+from debrisest.batch.motion import Motion
+from debrisest.batch.point_sums import KnownPoints
+from debrisest.batch.rates import Rates
+from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, pairs
+from debrisest.batch.solve import Solution, solve
+from debrisest.batch.tracks import Tracks, tracks
+
+
+def estimate_from_points(
+    times: Array, points: Array, sigma: Array | float | None, model: Array | None = None
+) -> Motion:
+    """Return the motion of the body that most of the tracked points belong to.
+
+    ``points (time, feature, 3)``, m, in inertially fixed axes from any origin at each epoch, NaN
+    where not seen; ``sigma``, m, one number, (time, feature) or (time, feature, 3), or None where
+    it is to be found; ``model (feature, 3)``, m, places in the feature frame, None if unknown.
+    """
+    plain = tracks(times, points, 1.0)
+    found = pairs(plain, model)
+    typical = noise_of(found) if sigma is None else _typical(points, sigma)
+    if not np.isfinite(typical):
+        typical = 1.0
+    kept = largest_rigid_set(found, typical)
+    tracked = tracks(times, points, typical if sigma is None else sigma)
+    tracked = tracked.without(~kept)
+    tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
+    unit = typical if sigma is None else 1.0
+    if model is not None:
+        known = KnownPoints(tracked, model)
+        return _with_points(solve(known, times, sigma is not None), plain, tracked, unit)
+    cloud = align_clouds(tracked)
+    all_points = FreePoints(tracked, cloud.model)
+    joined = cloud.tracks.seen.any(axis=0)
+    wider = None if np.array_equal(joined, tracked.seen.any(axis=0)) else all_points
+    return _with_points(solve(cloud, times, sigma is not None, wider), plain, tracked, unit)
+
+
+def estimate_from_attitudes(times: Array, q: Array, sigma: Array | float | None = None) -> Motion:
+    """Return the motion of a body from measured ``q_if (time, 4)``, NaN where there is none.
+
+    ``sigma``, rad, one number or (time,); or a covariance (time, 3, 3), rad^2, in inertial axes;
+    or None where it is to be found.
+    """
+    seen = np.asarray(np.isfinite(q).all(axis=-1))
+    information = _information(len(times), 1.0 if sigma is None else sigma, seen)
+    evidence = Attitudes(times[seen], quaternion.normalize(q[seen]), information[seen])
+    unit = 1.0
+    if sigma is None:
+        unit = _noise_of_windows(evidence)
+        evidence = evidence.scaled(unit)
+    return _without_points(solve(evidence, times, sigma is not None), times, unit)
+
+
+def estimate_from_rates(times: Array, rate: Array, sigma: Array | float | None = None) -> Motion:
+    """Return the motion of a body from measured rates (time, 3), rad/s, in axes fixed in it.
+
+    ``sigma``, rad/s, as for attitudes, a covariance in body axes. No attitude is measured: that at
+    the arc's epoch is what the rates add up to from the first epoch, and its sigma there is zero.
+    """
+    seen = np.asarray(np.isfinite(rate).all(axis=-1))
+    information = _information(len(times), 1.0 if sigma is None else sigma, seen)
+    evidence = Rates(times[seen], rate[seen], information[seen])
+    unit = 1.0
+    if sigma is None:
+        unit = _noise_of_windows(evidence)
+        evidence = evidence.scaled(unit)
+    return _without_points(solve(evidence, times, sigma is not None), times, unit)
+
+
+def _typical(points: Array, sigma: Array | float) -> float:
+    """Root mean square of the given sigma over what is seen, m."""
+    seen = np.isfinite(points).all(axis=-1)
+    weight = tracks(np.zeros(len(points)), points, sigma).weight
+    return float(np.sqrt(np.mean(1.0 / weight[seen & (weight > 0.0)]))) if seen.any() else 1.0
+
+
+def _information(count: int, sigma: Array | float, seen: BoolArray) -> Array:
+    sigma = np.asarray(sigma, dtype=np.float64)
+    if sigma.ndim == 3:
+        covariance = np.where(seen[:, None, None], sigma, np.eye(3))
+        return np.where(seen[:, None, None], np.linalg.inv(covariance), 0.0)
+    variance = np.broadcast_to(sigma**2, (count,))
+    return np.where(seen[:, None, None], np.eye(3) / variance[:, None, None], 0.0)
+
+
+def _noise_of_windows(evidence: Attitudes | Rates) -> float:
+    local = local_rates(evidence.times, evidence.seen())
+    return 1.0 if local is None else max(local.noise, 1e-12)
+
+
+def _with_points(solution: Solution, plain: Tracks, tracked: Tracks, unit: float) -> Motion:
+    """Return the motion with places of points and which observations count."""
+    evidence = solution.evidence
+    assert isinstance(evidence, KnownPoints | FreePoints)
+    kept = np.asarray(evidence.tracks.seen.any(axis=0))
+    used = np.zeros(plain.seen.shape, dtype=bool)
+    used[np.searchsorted(plain.times, evidence.times)] = evidence.tracks.seen
+    sigma = np.zeros_like(evidence.model)
+    if isinstance(evidence, FreePoints) and solution.arc is not None:
+        motion = course(solution.arc, evidence.times)
+        spread = evidence.covariance(motion, solution.covariance)
+        sigma = np.sqrt(np.diagonal(spread, 0, -2, -1))
+    elif isinstance(evidence, FreePoints):
+        sigma = np.sqrt(np.diag(evidence.inverse_laplacian))[:, None] * np.ones(3) * solution.noise
+    return _motion(
+        solution,
+        np.where(kept[:, None], evidence.model, np.nan),
+        np.where(kept[:, None], sigma, np.nan),
+        kept,
+        used,
+        float(1.0 - used.sum() / max(tracked.seen[:, kept].sum(), 1)),
+        unit,
+    )
+
+
+def _without_points(solution: Solution, times: Array, unit: float) -> Motion:
+    used = np.zeros(len(times), dtype=bool)
+    used[np.searchsorted(times, solution.evidence.times)] = solution.evidence.dof > 0.0
+    share = float(1.0 - np.mean(solution.evidence.dof > 0.0)) if len(used) else 0.0
+    nothing = np.zeros((0, 3))
+    return _motion(solution, nothing, nothing, np.zeros(0, dtype=bool), used, share, unit)
+
+
+def _motion(
+    solution: Solution,
+    points: Array,
+    points_sigma: Array,
+    kept: BoolArray,
+    used: BoolArray,
+    rejected: float,
+    unit: float,
+) -> Motion:
+    return Motion(
+        status=solution.status,
+        judged=solution.judged,
+        path=solution.path,
+        arc=solution.arc,
+        covariance=solution.covariance,
+        fit=solution.fit,
+        holds=solution.holds,
+        noise=solution.noise * unit,
+        points=points,
+        points_sigma=points_sigma,
+        kept=kept,
+        used=used,
+        rejected=rejected,
+        evidence=solution.evidence,
+        local=solution.local,
+        wander=solution.wander,
+    )

@@ -1,0 +1,113 @@
+"""Points of a body nobody knows as evidence: their places are unknowns, and eliminated exactly.
+
+At given attitudes the places ``f`` solve a linear system whose matrix, the Laplacian of who was
+seen with whom, is the same for the three axes and for all attitudes: it is factored once. What
+stays are the unknowns of the arc, less the attitude at its epoch, which only names the body axes.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray
+from debrisest.attitude import quaternion
+from debrisest.batch.arc import UNKNOWNS, Course
+from debrisest.batch.evidence import Epochs, Normal, Seen, Told, summed
+from debrisest.batch.point_sums import KnownPoints
+from debrisest.batch.tracks import Tracks
+
+
+@dataclass(frozen=True)
+class FreePoints:
+    """Evidence of points whose places in the body are unknown too."""
+
+    tracks: Tracks
+    model: Array
+    """Places (feature, 3), m, as far as they are known; the mean of a connected set is zero."""
+    of_rate = False
+    unknowns_fixed = 3
+
+    @cached_property
+    def known(self) -> KnownPoints:
+        """The same with the points where they are."""
+        return KnownPoints(self.tracks, self.model)
+
+    @property
+    def times(self) -> Array:
+        """Times (time,), s."""
+        return self.tracks.times
+
+    @cached_property
+    def dof(self) -> Array:
+        """Three for each point but one, less the share of the points' places (time,)."""
+        seen = self.known.dof
+        rank = np.linalg.matrix_rank(self.inverse_laplacian, hermitian=True)
+        return np.asarray(seen * max(1.0 - 3.0 * rank / max(float(seen.sum()), 1.0), 0.0))
+
+    @cached_property
+    def inverse_laplacian(self) -> Array:
+        """Covariance (feature, feature) of the places at known attitudes, the mean being zero."""
+        weight = self.tracks.weight
+        share = weight / np.maximum(weight.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+        laplacian = np.diag(weight.sum(axis=0)) - weight.T @ share
+        return np.linalg.pinv(0.5 * (laplacian + laplacian.T), 1e-9, hermitian=True)
+
+    def settled(self, q: Array) -> Self:
+        """Return it with the points that fit attitudes (time, 4) best."""
+        back = self.tracks.centred() @ quaternion.to_matrix(q)
+        pull = np.sum(self.tracks.weight[..., None] * back, axis=0)
+        return type(self)(self.tracks, self.inverse_laplacian @ pull)
+
+    def told(self, q: Array, rate: Array, epochs: Epochs = slice(None)) -> Told:
+        """Return what the epochs say at attitudes (..., 4), the points being where they are."""
+        return self.known.told(q, rate, epochs)
+
+    def normal(self, course: Course) -> Normal:
+        """Return the normal equations of the arc, the points at their best."""
+        settled = self.settled(course.q)
+        told = settled.known.told(course.q, course.rate)
+        normal = summed(told, course.turn_by)
+        cross = settled.cross(course)
+        spent = np.tensordot(
+            cross, np.tensordot(self.inverse_laplacian, cross, 1), ((0, 1), (0, 1))
+        )
+        return normal._replace(hold=normal.hold - spent)
+
+    def cross(self, course: Course) -> Array:
+        """Information (feature, 3, 11) between places and unknowns of the arc."""
+        turn = np.swapaxes(quaternion.to_matrix(course.q), -1, -2) @ course.turn_by
+        weighted = self.tracks.weight[..., None] * self.known.body
+        count, features = self.tracks.weight.shape
+        product = weighted.reshape(count, -1).T @ turn.reshape(count, -1)
+        t = product.reshape(features, 3, 3, UNKNOWNS)
+        rows = [t[:, 2, 1] - t[:, 1, 2], t[:, 0, 2] - t[:, 2, 0], t[:, 1, 0] - t[:, 0, 1]]
+        return np.stack(rows, axis=1)
+
+    def covariance(self, course: Course, arc_covariance: Array) -> Array:
+        """Covariance (feature, 3, 3) of the places, m^2, about the mean of all."""
+        moved = np.tensordot(self.inverse_laplacian, self.cross(course), 1)
+        own = np.diag(self.inverse_laplacian)[:, None, None] * np.eye(3)
+        return np.asarray(own + moved @ arc_covariance @ np.swapaxes(moved, -1, -2))
+
+    def chi2(self, q: Array, rate: Array) -> float:
+        """Return the chi-square of all epochs, the points at their best."""
+        return self.settled(q).known.chi2(q, rate)
+
+    def within(self, epochs: BoolArray) -> Self:
+        """Return the evidence of some epochs."""
+        return type(self)(self.tracks.within(epochs), self.model)
+
+    def seen(self) -> Seen:
+        """Return attitudes of single epochs, from the points where they are."""
+        return self.known.seen()
+
+    def gated(self, q: Array, rate: Array, limit: float) -> Self:
+        """Return it without points off by more than ``limit`` (three degrees of freedom)."""
+        kept = self.settled(q).known.gated(q, rate, limit)
+        return type(self)(kept.tracks, kept.model)
+
+    def scaled(self, noise: float) -> Self:
+        """Return it with all standard deviations multiplied by ``noise``."""
+        return type(self)(self.tracks.scaled(noise), self.model)

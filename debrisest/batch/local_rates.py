@@ -1,0 +1,130 @@
+"""Attitude and rate about the middle of short windows, from attitudes of single epochs.
+
+In a window the rotation vector from its middle is a polynomial of third degree in time; the fit is
+weighted with the information of the attitudes, and far ones count less (Cauchy).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.attitude import quaternion
+from debrisest.batch.evidence import Seen
+
+_LARGEST_TURN = np.radians(40.0)  # over half a window
+_FEWEST_EPOCHS = 5
+_MOST_WINDOWS = 200
+_FEWEST_WINDOWS = 12
+_REWEIGHTINGS = 3
+
+
+class Local(NamedTuple):
+    """Fits of windows, in the feature frame but for the attitude."""
+
+    time: Array
+    """Middle (window,), s."""
+    half: float
+    """Half length, s."""
+    q: Array
+    """``q_if (window, 4)``."""
+    rate: Array
+    """(window, 3), rad/s."""
+    covariance: Array
+    """Of the rate (window, 3, 3)."""
+    noise: float
+    """Median root of chi2/dof: the factor by which the noise exceeds what was said."""
+
+
+def local_rates(times: Array, seen: Seen) -> Local | None:
+    """Return fits of windows over the span of the attitudes, None if no window has five."""
+    good = np.flatnonzero(np.isfinite(seen.q[:, 0]))
+    if len(good) < _FEWEST_EPOCHS + 1:
+        return None
+    times, q, information = times[good], seen.q[good], seen.information[good]
+    half = _half_length(times, q)
+    best = None
+    for _ in range(4):
+        found = _fits(times, q, information, half)
+        if found is not None and (best is None or len(found.time) > len(best.time)):
+            best = found
+        if best is not None and len(best.time) >= _FEWEST_WINDOWS:
+            break
+        half /= 2.0
+    return best
+
+
+def _half_length(times: Array, q: Array) -> float:
+    """Longest lag, s, whose median turn is small enough."""
+    span = times[-1] - times[0]
+    step = float(np.median(np.diff(times)))
+    half = 2.5 * step
+    while half < span / 6.0:
+        longer = 1.5 * half
+        first = np.arange(len(times))
+        last = np.searchsorted(times, times + longer)
+        inside = last < len(times)
+        first, last = first[inside], last[inside]
+        close = times[last] - times[first] < 1.5 * longer
+        if not close.any():
+            break
+        turn = quaternion.angle_between(q[first[close]], q[last[close]])
+        if np.median(turn) > _LARGEST_TURN:
+            break
+        half = longer
+    return half
+
+
+def _fits(times: Array, q: Array, information: Array, half: float) -> Local | None:
+    stride = max(half / 2.0, (times[-1] - times[0]) / _MOST_WINDOWS)
+    middles = times[np.unique(np.searchsorted(times, np.arange(times[0], times[-1], stride)))]
+    fits = []
+    for middle in middles:
+        low, high = np.searchsorted(times, [middle - half, middle + half + 1e-9])
+        if high - low >= _FEWEST_EPOCHS and _both_sides(times[low:high], middle, half):
+            chosen = slice(low, high)
+            fits.append(_fit(middle, times[chosen], q[chosen], information[chosen]))
+    if not fits:
+        return None
+    time, attitude, rate, covariance, excess = (np.array(part) for part in zip(*fits))
+    return Local(time, half, attitude, rate, covariance, float(np.sqrt(np.median(excess))))
+
+
+def _both_sides(times: Array, middle: float, half: float) -> bool:
+    return bool(times[0] < middle - 0.4 * half and times[-1] > middle + 0.4 * half)
+
+
+def _fit(
+    middle: float, times: Array, q: Array, information: Array
+) -> tuple[float, Array, Array, Array, float]:
+    """Return middle, attitude, rate, its covariance and chi2/dof of one window."""
+    centre = q[np.argmin(np.abs(times - middle))]
+    turn = quaternion.log(quaternion.multiply(quaternion.conjugate(centre), q))
+    axes = quaternion.to_matrix(centre)
+    weight = axes.T @ information @ axes
+    span = np.abs(times - middle).max()
+    degree = 3 if len(times) >= 8 else 2
+    powers = ((times - middle) / span)[:, None] ** np.arange(degree + 1)
+    robust = np.ones(len(times))
+    for _ in range(_REWEIGHTINGS):
+        solution, hold, chi2 = _weighted(powers, turn, robust[:, None, None] * weight, weight)
+        typical = max(float(np.median(chi2)) / 2.4, 1e-300)
+        robust = 1.0 / (1.0 + chi2 / (9.0 * typical))
+    inverse = np.linalg.pinv(hold, 1e-12, hermitian=True)
+    dof = max(3.0 * len(times) - 3.0 * (degree + 1), 1.0)
+    excess = float(chi2.sum()) / dof
+    offset, rate = solution[0], solution[1] / span
+    attitude = quaternion.multiply(centre, quaternion.exp(offset))
+    return middle, attitude, rate, inverse[3:6, 3:6] / span**2, excess
+
+
+def _weighted(
+    powers: Array, turn: Array, weight: Array, plain: Array
+) -> tuple[Array, Array, Array]:
+    """Return coefficients (degree + 1, 3), their information, and chi2 of each epoch."""
+    count = powers.shape[1]
+    hold = np.einsum("ka,kb,kij->aibj", powers, powers, weight).reshape(3 * count, 3 * count)
+    pull = np.einsum("ka,kij,kj->ai", powers, weight, turn).ravel()
+    solution = np.linalg.lstsq(hold, pull, rcond=1e-12)[0].reshape(count, 3)
+    residual = turn - powers @ solution
+    return solution, hold, np.einsum("ki,kij,kj->k", residual, plain, residual)

@@ -1,0 +1,48 @@
+"""Inertia and angular momentum from local rates: a start without signs, grids or truth.
+
+The angular momentum is constant in inertial axes: ``(1 + sum p_k S_k) w = R^T h`` is linear in the
+five numbers ``p`` of the inertia and in ``h``, whose scale is that of the inertia.
+"""
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.attitude import quaternion
+from debrisest.batch.local_rates import Local
+from debrisest.dynamics import log_inertia
+
+_PRIOR = 0.5  # of each p
+_REWEIGHTINGS = 6
+_LEAST_MOMENT, _LARGEST_MOMENT = 0.02, 1.7  # of a body whose moments add up to 3
+_SHARE_OF_TURN = 0.05  # rad, error of a window's attitude against which its rate is weighed
+
+
+def inertia_start(local: Local) -> Array:
+    """Return the log-ratios of the inertia (5) from the conservation of angular momentum."""
+    back = np.swapaxes(quaternion.to_matrix(local.q), -1, -2)
+    turned = np.moveaxis(log_inertia.BASIS @ local.rate[:, None, :, None], 1, 2)[..., 0]
+    rows = np.concatenate([turned, -back], axis=-1)
+    speed2 = np.sum(local.rate**2, axis=-1)
+    variance = np.trace(local.covariance, axis1=-2, axis2=-1) / 3.0 + _SHARE_OF_TURN**2 * speed2
+    robust, solution = np.ones(len(rows)), np.zeros(8)
+    for _ in range(_REWEIGHTINGS):
+        weight = (robust / variance)[:, None, None]
+        back_rows = np.swapaxes(rows, -1, -2)
+        hold = np.sum(back_rows @ (weight * rows), axis=0)
+        pull = -np.sum(back_rows @ (weight * local.rate[..., None]), axis=0)[:, 0]
+        hold[range(5), range(5)] += _PRIOR**-2
+        solution = np.linalg.lstsq(hold, pull, rcond=1e-12)[0]
+        residual = (rows @ solution) + local.rate
+        robust = 1.0 / (1.0 + np.sum(residual**2, axis=-1) / (9.0 * variance))
+    return log_inertia.log_ratios(_of_a_body(solution[:5]))
+
+
+def _of_a_body(p: Array) -> Array:
+    """Inertia (3, 3) of ``p``, drawn to equal moments until a body can have it."""
+    for _ in range(100):
+        tensor = np.eye(3) + np.tensordot(p, log_inertia.BASIS, 1)
+        moments = np.linalg.eigvalsh(tensor)
+        if moments[0] > _LEAST_MOMENT and moments[-1] < _LARGEST_MOMENT / 3.0 * moments.sum():
+            return np.asarray(tensor)
+        p = 0.9 * p
+    return np.eye(3)

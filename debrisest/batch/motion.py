@@ -1,0 +1,106 @@
+"""The answer: the motion of one body, what it is worth, and what the data cannot tell."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray
+from debrisest.batch.acceptance import Fit
+from debrisest.batch.arc import Arc
+from debrisest.batch.evidence import Evidence
+from debrisest.batch.local_rates import Local
+from debrisest.batch.path import Path, path_of, unknown_path
+from debrisest.batch.smoother import Wander, smooth
+from debrisest.outcome import Outcome
+
+
+class Status(Outcome):
+    """How an estimate ended."""
+
+    ACCEPTED = 0, "torque-free motion explains the data: attitude, rate and inertia ratios hold"
+    ACCEPTED_IN_PART = (
+        1,
+        "torque-free motion explains the data: attitude and rate hold, but the motion does not "
+        "show all of the inertia (a steady spin or a body of equal moments never does); use only "
+        "the directions whose sigma is small",
+    )
+    UNTESTED = (
+        2,
+        "torque-free motion fits, but the data are too few to test it: more epochs, or more points "
+        "at an epoch, would decide",
+    )
+    NOT_TORQUE_FREE = (
+        3,
+        "no torque-free motion explains the data beyond the stated times: attitude and rate are "
+        "from a smoother that assumes no law of motion, and no inertia is claimed",
+    )
+    TOO_FEW = (
+        4,
+        "too few data for a motion: it takes six epochs, close enough in time that the body turns "
+        "less than a quarter turn between them, each with an attitude or three points not in line",
+    )
+
+    @property
+    def accepted(self) -> bool:
+        """Whether torque-free motion has been tested and holds."""
+        return self <= Status.ACCEPTED_IN_PART
+
+
+class Judged(Outcome):
+    """By which tests."""
+
+    CHI_SQUARE_AND_BLOCKS = 0, "the residuals are as large as the given noise, and none last"
+    NOISE_UNKNOWN = (
+        1,
+        "no noise was given: it is estimated from the residuals, whose size therefore proves "
+        "nothing; judged by residuals that last (block test) alone",
+    )
+    NOISE_LARGER = (
+        2,
+        "the residuals are larger than the given noise but do not last: the noise is taken as it "
+        "is found, and the sigmas with it",
+    )
+
+
+class Motion(NamedTuple):
+    """Motion of the feature frame ``f``; with unknown points ``f`` is inertial at the arc's epoch.
+
+    Where the status is `NOT_TORQUE_FREE`, ``arc`` is None and the path is the smoother's.
+    """
+
+    status: Status
+    judged: Judged
+    path: Path
+    """At all epochs given."""
+    arc: Arc | None
+    covariance: Array
+    """Of the errors of the arc's unknowns (11, 11), NaN without an arc."""
+    fit: Fit | None
+    holds: tuple[float, float]
+    """Times, s, over which the best torque-free arc explains the data."""
+    noise: float
+    """Standard deviation of the measurements as taken, in units of the ones given (or unit: m)."""
+    points: Array
+    """Places of points (feature, 3), m; NaN for those left out. Without points (0, 3)."""
+    points_sigma: Array
+    """(feature, 3), m; zero where they were given."""
+    kept: BoolArray
+    """Which points belong to the body (feature,)."""
+    used: BoolArray
+    """Which observations count: (time, feature), or (time,) without points."""
+    rejected: float
+    """Share of the observations that do not."""
+    evidence: Evidence | None
+    local: Local | None
+    wander: Wander | None
+
+    def at(self, times: Array) -> Path:
+        """Return the motion at any ``times (time,)``, s, increasing, with covariances."""
+        if self.arc is not None:
+            return path_of(self.arc, self.covariance, times)
+        if self.evidence is None or self.local is None or self.wander is None:
+            return unknown_path(times)
+        return smooth(self.evidence, self.local, self.wander, times)
+
+
+NO_COVARIANCE = np.full((11, 11), np.nan)

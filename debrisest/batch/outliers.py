@@ -1,0 +1,66 @@
+"""Points of the model that are not where the model has them.
+
+No chi-square sees a point that is off by one sigma, but the mean of its residuals in body axes
+does.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.attitude import quaternion
+from debrisest.batch.acceptance import tested
+from debrisest.batch.arc import Arc, along
+from debrisest.batch.descent import descend
+from debrisest.batch.point_sums import KnownPoints
+from debrisest.batch.windows import Growth
+
+_LIMIT = 6.0  # sigmas of the mean
+_SUSPECTS = 3
+_FEWEST_POINTS = 4
+_GATES = (60.0, 25.0)
+
+
+def without_biased_points(growth: Growth) -> Growth:
+    """Return the fit without points whose mean residual is off; of a known body only."""
+    evidence = growth.evidence
+    while isinstance(evidence, KnownPoints):
+        bias = mean_residuals(evidence, growth.found.arc)
+        present = int(np.sum(evidence.tracks.weight.any(axis=0)))
+        if bias.max(initial=0.0) < _LIMIT or present < _FEWEST_POINTS:
+            break
+        suspects = np.argsort(-bias)[:_SUSPECTS]
+        trials = [_refitted(growth, evidence, int(suspect)) for suspect in suspects]
+        growth, evidence, _ = min(trials, key=lambda trial: trial[2])
+    return growth
+
+
+def mean_residuals(evidence: KnownPoints, arc: Arc) -> Array:
+    """Return the mean residual of each point in body axes (feature,), in its own sigmas."""
+    q = along(arc, evidence.times)[0]
+    residual = np.nan_to_num(evidence.residuals(q)) @ quaternion.to_matrix(q)
+    weight = evidence.tracks.weight
+    share = weight / np.maximum(weight.sum(axis=1, keepdims=True), np.finfo(float).tiny)
+    total = np.linalg.norm(np.sum(weight[..., None] * residual, axis=0), axis=-1)
+    variance = np.sum(weight * (1.0 - share), axis=0)
+    excess = max(tested(evidence, arc).excess, 1e-12)
+    return np.asarray(total / np.sqrt(np.maximum(variance, np.finfo(float).tiny) * excess))
+
+
+def _refitted(
+    growth: Growth, evidence: KnownPoints, suspect: int
+) -> tuple[Growth, KnownPoints, float]:
+    """Return the fit without a point, what it is made of, and the largest bias left."""
+    column = np.arange(evidence.tracks.weight.shape[1]) == suspect
+    kept = replace(evidence, tracks=evidence.tracks.without(column))
+    kept = kept.within(kept.dof > 0.0)
+    arc = growth.found.arc
+    for limit in _GATES:
+        found = descend(kept, arc, 12)
+        arc = found.arc
+        kept = kept.gated(*along(arc, kept.times), limit)
+    found = descend(kept, arc, 12)
+    fit = tested(kept, found.arc)
+    refitted = growth._replace(found=found, fit=fit, evidence=kept)
+    return refitted, kept, float(mean_residuals(kept, found.arc).max(initial=0.0))

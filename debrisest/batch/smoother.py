@@ -1,0 +1,202 @@
+"""Attitude and rate without a law of motion: a smoother for any rotation.
+
+The angular acceleration, or its derivative, is white noise between epochs; which of the two, and
+its intensity, is found by maximum likelihood. The errors (6 or 9) are the rotation vector in
+inertial axes, the rate and perhaps the acceleration in the feature frame. Forward a Kalman filter
+in information form, which takes what `Evidence` tells, then the recursion of Rauch, Tung and
+Striebel.
+"""
+
+from math import factorial
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, IntArray
+from debrisest.attitude import quaternion
+from debrisest.batch.evidence import Evidence
+from debrisest.batch.local_rates import Local
+from debrisest.batch.path import Path
+
+_UPDATES = 2  # of an epoch, each about the last
+_COARSE, _FINE = np.logspace(-6.0, 5.0, 12), np.logspace(-0.8, 0.8, 9)
+_ORDERS = (2, 3)
+
+
+class Wander(NamedTuple):
+    """What the likelihood says of a wandering rate."""
+
+    order: int
+    """2: the acceleration is white, 3: its derivative is."""
+    intensity: float
+    """Of the white noise, in units of the noise's variance factor, rad^2/s^3 or rad^2/s^5."""
+    noise: float
+    """Factor on the measurements' standard deviations."""
+
+
+class _State(NamedTuple):
+    """One epoch of one filter for each intensity."""
+
+    q: Array
+    motion: Array
+    """Rate and perhaps acceleration, one after the other (..., 3 or 6)."""
+    spread: Array
+
+    def moved(self, error: Array) -> tuple[Array, Array]:
+        """Return attitude and motion moved by errors."""
+        q = quaternion.multiply(quaternion.exp(error[:, :3]), self.q)
+        return q, self.motion + error[:, 3:]
+
+
+class _Track(NamedTuple):
+    """A filter's way over the epochs, and its likelihood."""
+
+    predicted: list[_State]
+    filtered: list[_State]
+    transition: list[Array]
+    misfit: Array
+    volume: Array
+
+
+def wander(evidence: Evidence, local: Local) -> Wander:
+    """Return law, intensity and noise that make the measurements most likely."""
+    found = [_most_likely(evidence, local, order) for order in _ORDERS]
+    return min(found, key=lambda pair: pair[0])[1]
+
+
+def _most_likely(evidence: Evidence, local: Local, order: int) -> tuple[float, Wander]:
+    changes = np.sum(np.diff(local.rate, axis=0) ** 2) / len(local.rate)
+    floor = float(np.median(np.trace(local.covariance, axis1=1, axis2=2)))
+    middle = max(changes, floor) / local.half ** (2 * order - 3)
+    dof = max(float(evidence.dof.sum()), 1.0)
+    best = (np.inf, Wander(order, middle, 1.0))
+    for factors in (_COARSE, _FINE):
+        intensity = best[1].intensity * factors
+        track = _forward(evidence, local, order, intensity, evidence.times)
+        excess = np.maximum(track.misfit / dof, 1e-12)
+        unlikely = track.misfit / excess + dof * np.log(excess) + track.volume
+        at = int(np.nanargmin(unlikely))
+        wanders = Wander(order, float(intensity[at]), float(np.sqrt(excess[at])))
+        best = (float(unlikely[at]), wanders)
+    return best
+
+
+def smooth(evidence: Evidence, local: Local, found: Wander, times: Array) -> Path:
+    """Return the motion at ``times (time,)``, s, that all measurements make most likely.
+
+    NaN before the first epoch that tells its attitude.
+    """
+    scaled = evidence.scaled(found.noise)
+    intensity = np.array([found.intensity * found.noise**2])
+    track = _forward(scaled, local, found.order, intensity, times)
+    merged, _ = _merged(scaled, times)
+    steps = _backward(track)
+    q, motion, spread = (np.array([step[part][0] for step in steps]) for part in range(3))
+    path = Path(merged, q, motion[:, :3], spread[:, :3, :3], spread[:, 3:6, 3:6])
+    chosen = path.at(np.searchsorted(merged, np.maximum(times, merged[0])))
+    for part in chosen[1:]:
+        part[times < merged[0]] = np.nan
+    return chosen._replace(times=times)
+
+
+def _merged(evidence: Evidence, times: Array) -> tuple[Array, IntArray]:
+    """Return times from the first attitude on, and the epoch measured at each, -1 if none."""
+    first = evidence.times[np.argmax(np.isfinite(evidence.seen().q[:, 0]))]
+    merged = np.union1d(evidence.times, times)
+    merged = merged[merged >= first]
+    at = np.minimum(np.searchsorted(evidence.times, merged), len(evidence.times) - 1)
+    return merged, np.where(evidence.times[at] == merged, at, -1)
+
+
+def _start(evidence: Evidence, local: Local, order: int, copies: int) -> _State:
+    seen = evidence.seen()
+    first = int(np.argmax(np.isfinite(seen.q[:, 0])))
+    nearest = int(np.argmin(np.abs(local.time - evidence.times[first])))
+    turn = 1e-12 if evidence.of_rate else 1.0
+    speed2 = np.max(np.sum(local.rate**2, axis=-1)) + np.trace(local.covariance[nearest])
+    variance = [turn, speed2, speed2 / local.half**2][:order]
+    motion = np.concatenate([local.rate[nearest], np.zeros(3 * order - 6)])
+    return _State(
+        np.tile(seen.q[first], (copies, 1)),
+        np.tile(motion, (copies, 1)),
+        np.tile(np.diag(np.repeat(variance, 3)), (copies, 1, 1)),
+    )
+
+
+def _forward(
+    evidence: Evidence, local: Local, order: int, intensity: Array, times: Array
+) -> _Track:
+    """Filter once for each intensity."""
+    merged, epochs = _merged(evidence, times)
+    state = _start(evidence, local, order, len(intensity))
+    track = _Track([], [], [], *np.zeros((2, len(intensity))))
+    for step, epoch in zip(np.diff(merged, prepend=merged[0]), epochs):
+        state, transition = _predicted(state, float(step), intensity, order)
+        track.transition.append(transition)
+        track.predicted.append(state)
+        if epoch >= 0:
+            state = _updated(evidence, int(epoch), state, track)
+        track.filtered.append(state)
+    return track
+
+
+def _predicted(state: _State, step: float, intensity: Array, order: int) -> tuple[_State, Array]:
+    taylor, noise = _chain(step, order)
+    turn = np.tensordot(taylor[0, 1:], state.motion.reshape(-1, order - 1, 3), ((0,), (1,)))
+    frame = np.tile(np.eye(3 * order), (len(state.q), 1, 1))
+    middle = quaternion.multiply(state.q, quaternion.exp(0.5 * turn))
+    frame[:, :3, :3] = quaternion.to_matrix(middle)
+    back = np.swapaxes(frame, -1, -2)
+    transition = frame @ np.kron(taylor, np.eye(3)) @ back
+    added = intensity[:, None, None] * (frame @ np.kron(noise, np.eye(3)) @ back)
+    motion = state.motion @ np.kron(taylor[1:, 1:], np.eye(3)).T
+    q = quaternion.multiply(state.q, quaternion.exp(turn))
+    spread = transition @ state.spread @ np.swapaxes(transition, -1, -2) + added
+    return _State(q, motion, spread), transition
+
+
+def _chain(step: float, order: int) -> tuple[Array, Array]:
+    """Transition and noise (order, order) of integrators in a row, the last fed by white noise."""
+    taylor, noise = np.zeros((2, order, order))
+    for i in range(order):
+        for j in range(order):
+            left, right = order - 1 - i, order - 1 - j
+            power = left + right + 1
+            noise[i, j] = step**power / (power * factorial(left) * factorial(right))
+            if j >= i:
+                taylor[i, j] = step ** (j - i) / factorial(j - i)
+    return taylor, noise
+
+
+def _updated(evidence: Evidence, epoch: int, state: _State, track: _Track) -> _State:
+    """Return the state after an epoch, and add its likelihood to the track."""
+    part = slice(3, 6) if evidence.of_rate else slice(0, 3)
+    across, own = state.spread[:, :, part], state.spread[:, part, part]
+    error = np.zeros(state.spread.shape[:-1])
+    for update in range(_UPDATES):
+        q, motion = state.moved(error)
+        told = evidence.told(q, motion[:, :3], epoch)
+        wider = np.eye(3) + told.hold @ own
+        inverse = np.linalg.inv(wider)
+        pull = told.pull + (told.hold @ error[:, part, None])[..., 0]
+        step = across @ inverse @ pull[..., None]
+        if update == 0:
+            track.misfit[:] += told.chi2 - np.sum(told.pull * step[:, part, 0], axis=-1)
+            track.volume[:] += np.log(np.abs(np.linalg.det(wider)))
+        error = step[..., 0]
+    spread = state.spread - across @ inverse @ told.hold @ np.swapaxes(across, -1, -2)
+    return _State(*state.moved(error), 0.5 * (spread + np.swapaxes(spread, -1, -2)))
+
+
+def _backward(track: _Track) -> list[_State]:
+    steps = [track.filtered[-1]]
+    for k in range(len(track.filtered) - 2, -1, -1):
+        state, ahead, after = track.filtered[k], track.predicted[k + 1], steps[-1]
+        across = track.transition[k + 1] @ state.spread
+        gain = np.swapaxes(np.linalg.solve(ahead.spread, across), -1, -2)
+        turn = quaternion.log(quaternion.multiply(after.q, quaternion.conjugate(ahead.q)))
+        error = np.concatenate([turn, after.motion - ahead.motion], axis=-1)
+        moved = state.moved((gain @ error[..., None])[..., 0])
+        change = gain @ (after.spread - ahead.spread) @ np.swapaxes(gain, -1, -2)
+        steps.append(_State(*moved, state.spread + change))
+    return steps[::-1]

@@ -1,0 +1,44 @@
+"""Starts of the descent, best first."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from debrisest.arrays import Array, IntArray
+from debrisest.batch.arc import Arc
+from debrisest.batch.local_rates import Local
+from debrisest.batch.momentum_start import inertia_start
+from debrisest.dynamics import log_inertia
+
+_MOST_WINDOWS = 4
+_GUESSES = np.array(
+    [[0.004, 0.002], [0.05, 0.03], [-0.3, -0.2], [0.3, 0.2], [-0.2, 0.3]]
+)  # of the first two moments, where the momentum says nothing
+
+
+def starts(local: Local) -> Iterator[Arc]:
+    """Yield arcs about the middle of the best windows: inertia by momentum first, then guesses."""
+    best = best_windows(local)
+    inertia = inertia_start(local)
+    for window in best:
+        yield _arc(local, window, inertia)
+    for guess in _GUESSES:
+        tensor = np.diag([1.0 + guess[0], 1.0 - guess[0] + guess[1], 1.0 - guess[1]])
+        for window in best[:2]:
+            yield _arc(local, window, log_inertia.log_ratios(tensor))
+
+
+def best_windows(local: Local) -> IntArray:
+    """Return up to four windows with the best rates, far from each other."""
+    speed2 = np.maximum(np.sum(local.rate**2, axis=-1), 1e-300)
+    spread = np.trace(local.covariance, axis1=-2, axis2=-1) / speed2
+    chosen: list[int] = []
+    for window in np.argsort(spread):
+        apart = np.abs(local.time[chosen] - local.time[window])
+        if apart.min(initial=np.inf) >= 4.0 * local.half:
+            chosen.append(int(window))
+    return np.array(chosen[:_MOST_WINDOWS])
+
+
+def _arc(local: Local, window: int, inertia: Array) -> Arc:
+    return Arc(float(local.time[window]), local.q[window], local.rate[window], inertia)

@@ -1,0 +1,96 @@
+"""From a start to the whole span: windows that grow both ways, cleaned of outliers on the way."""
+
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+
+from debrisest.batch.acceptance import Fit, tested
+from debrisest.batch.arc import Arc, along, course, moved
+from debrisest.batch.descent import Descent, covariance, descend
+from debrisest.batch.evidence import Evidence
+
+_SURE_TURN = 0.35  # rad, sigma of the attitude up to which a window may grow at once
+_LEAST_GROWTH = 0.25  # of the window's length, to each side
+_WILD = 2.0  # chi2/dof of a window, in units of the noise, that has gone wrong
+_WIDER = 1.2  # by how much chi2/dof may grow with more points
+_GATE = 25.0  # normalised square, three degrees of freedom: once in 60 000 points
+_FIRST_GATE = 60.0
+
+AnyEvidence = TypeVar("AnyEvidence", bound=Evidence)
+
+
+class Growth(NamedTuple):
+    """How far a start has come."""
+
+    found: Descent
+    fit: Fit
+    evidence: Evidence
+    """Of the last window, less what the gates have rejected."""
+    span: tuple[float, float]
+    """Of the last window, s."""
+    whole: bool
+    """Whether the last window is the whole span and was not left."""
+
+
+def grow(evidence: Evidence, arc: Arc, half: float, gates: bool = True) -> Growth:
+    """Return the fit of the longest window that an arc, true about its epoch, explains."""
+    first, last = evidence.times[0], evidence.times[-1]
+    low, high = arc.epoch - half, arc.epoch + half
+    good: Growth | None = None
+    while True:
+        window = evidence.within((evidence.times >= low) & (evidence.times <= high))
+        found, kept = _fitted(window, arc, gates)
+        fit = tested(kept, found.arc)
+        whole = low <= first and high >= last
+        now = Growth(found, fit, kept, (max(low, first), min(high, last)), whole)
+        if fit.excess > _WILD and not (fit.steady and good is None):
+            return (good or now)._replace(whole=False)
+        good = now
+        if whole:
+            return _at_middle(good)
+        arc = found.arc
+        low, high = _wider(evidence, found, low, high)
+
+
+def widened(growth: Growth, wider: Evidence) -> Growth:
+    """Return the fit of more evidence over the same span, unless it disagrees."""
+    found, kept = _fitted(wider, growth.found.arc, True)
+    fit = tested(kept, found.arc)
+    agrees = fit.steady and fit.excess < max(_WIDER, _WIDER * growth.fit.excess)
+    return growth._replace(found=found, fit=fit, evidence=kept) if agrees else growth
+
+
+def _fitted(window: AnyEvidence, arc: Arc, gates: bool) -> tuple[Descent, AnyEvidence]:
+    """Return the fit of a window, first with all points, then without outliers."""
+    found = descend(window, arc, 12)
+    kept = window
+    if not gates:
+        return found, kept
+    for limit in (_FIRST_GATE, _GATE):
+        gated = window.gated(*along(found.arc, window.times), limit)
+        if np.array_equal(gated.dof, kept.dof):
+            continue
+        kept = gated
+        found = descend(kept, found.arc, 12)
+    return found, kept
+
+
+def _wider(evidence: Evidence, found: Descent, low: float, high: float) -> tuple[float, float]:
+    """Return the next window: twice as long, as far as the attitude is predicted well enough."""
+    length = min(high, evidence.times[-1]) - max(low, evidence.times[0])
+    steps = np.linspace(_LEAST_GROWTH, 0.5, 6) * length
+    before, after = max(low, evidence.times[0]) - steps, min(high, evidence.times[-1]) + steps
+    derivative = course(found.arc, np.concatenate([before, after])).turn_by
+    spread = covariance(found.hold, evidence.unknowns_fixed)
+    turn = derivative @ spread @ np.swapaxes(derivative, -1, -2)
+    sure = np.sqrt(np.linalg.eigvalsh(turn)[:, -1]).reshape(2, 6) < _SURE_TURN
+    below, above = (max(int(np.sum(np.cumprod(side))) - 1, 0) for side in sure)
+    return float(before[below]), float(after[above])
+
+
+def _at_middle(growth: Growth) -> Growth:
+    """Return the same fit with the unknowns of the middle epoch, whose information is rounder."""
+    low, high = growth.span
+    arc = moved(growth.found.arc, 0.5 * (low + high))
+    found = descend(growth.evidence, arc, 10)
+    return growth._replace(found=found, fit=tested(growth.evidence, found.arc))
