@@ -92,7 +92,8 @@ def _parts_that_refuse(scenario: Scenario) -> Found:
     parts = scenario.simulation
     if not any(part.tried for part in parts.values()):
         return
-    clock, draws = Clock(2 * scenario.step_s, scenario.step_s), Draws(scenario.seed, "", [0])
+    clock = Clock.regular(2 * scenario.step_s, scenario.step_s)
+    draws = Draws(scenario.seed, "", [0])
     data: Data = {"time_s": clock.times}
     for path, part in parts.items():
         try:

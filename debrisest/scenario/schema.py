@@ -157,7 +157,7 @@ class Scenario(Keys):
     @property
     def clock(self) -> Clock:
         """Return the time grid."""
-        return Clock(self.duration_s, self.step_s)
+        return Clock.regular(self.duration_s, self.step_s)
 
     @property
     def simulation(self) -> dict[str, SimulationPart]:

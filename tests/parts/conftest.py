@@ -19,7 +19,7 @@ def simulated() -> Callable:
     """Simulate a random target seen from an eccentric orbit, and further parts."""
 
     def run(*parts, runs=4, duration=10.0, step=1.0, rate=SLOW, first=0, seed=1):
-        clock = Clock(duration, step)
+        clock = Clock.regular(duration, step)
         draws = Draws(seed, "case", list(range(first, first + runs)))
         data = {"time_s": clock.times, "run": np.arange(runs)}
         target = RandomPoints(

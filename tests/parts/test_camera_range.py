@@ -20,7 +20,7 @@ from debrisest.parts.truth.random_tumble import RandomTumble
 from debrisest.parts.truth.relative_ellipse import ClosedEllipse
 from debrisest.parts.truth.targets import Feature, RigidPoints
 
-CLOCK = Clock(300.0, 5.0)
+CLOCK = Clock.regular(300.0, 5.0)
 PLACE, SPEED = [5.0, 17.3205081, 5.90884652], [9.3358198e-3, -1.078007613e-2, -1.12316e-3]
 CORNERS = {
     f"{x}{y}{z}": [x * 1.0, y * 0.75, z * 0.5] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)

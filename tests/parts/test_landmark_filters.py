@@ -19,7 +19,7 @@ from debrisest.parts.truth.targets import RigidPoints
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.roles import Filtered, Given
 
-CLOCK = Clock(300.0, 5.0)
+CLOCK = Clock.regular(300.0, 5.0)
 WINDOWS = {"windows_s": [50, 100, 200, 900], "spacing_s": [5, 5, 5, 5], "extended_s": []}
 CORNERS = [[x, y, z] for x in (1, -1) for y in (0.75, -0.75) for z in (0.5, -0.5)]
 POINTS = [*CORNERS, [0.35, 2, 0.1], [0, -0.3, 0.9]]

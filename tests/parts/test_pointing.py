@@ -28,7 +28,7 @@ def scene(duration: int, runs: int) -> dict[str, np.ndarray]:
 
 def simulate(data: dict[str, np.ndarray], runs: list[int], **keys: object) -> dict:
     part = PointingControl(**KEYS | keys)
-    result = part.simulate(data, Clock(len(data["time_s"]), 1.0), Draws(1, "case", runs))
+    result = part.simulate(data, Clock.regular(len(data["time_s"]), 1.0), Draws(1, "case", runs))
     assert set(result) == set(part.gives)
     return result
 

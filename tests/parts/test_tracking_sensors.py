@@ -31,7 +31,7 @@ OWN = DEBRIS | {
     "argument_of_periapsis_deg": 90.0,
 }
 HALF = np.array([240.0, 180.0])
-CLOCK = Clock(60.0, 1.0)
+CLOCK = Clock.regular(60.0, 1.0)
 
 
 def draws(runs: int, seed: int = 1) -> Draws:

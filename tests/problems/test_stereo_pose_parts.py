@@ -13,7 +13,7 @@ from debrisest.problems.stereo_pose.score import plain_covariance, scores
 from debrisest.roles import Filtered
 
 POINTS, EPOCHS = 5, 4
-CLOCK = Clock(float(EPOCHS), 1.0)
+CLOCK = Clock.regular(float(EPOCHS), 1.0)
 
 
 @pytest.fixture(scope="module")

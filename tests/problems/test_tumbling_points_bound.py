@@ -16,7 +16,7 @@ from debrisest.roles import Given
 # in their own frame: x from the first to the second, y normal to the first three
 POINTS = np.array([[0, 0, 0], [2, 0, 0], [0.5, 0, -1], [-1, 2, 0.3], [0.2, -1, 2], [1, 1, 1.0]])
 NOISE, EPOCHS = 0.002, 60
-CLOCK = Clock(float(EPOCHS), 1.0)
+CLOCK = Clock.regular(float(EPOCHS), 1.0)
 VARIANCE = MotionVariances(attitude_rad2=1, rate_rad2_s2=0.1, log_inertia=1)
 PROBLEM = TumblingPoints(kind="tumbling_points")
 START = FirstPoints(kind="first_points", variance=VARIANCE)

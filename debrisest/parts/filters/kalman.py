@@ -20,8 +20,7 @@ KeptTimes = Annotated[
 
 def kept_epochs(times: list[float], clock: Clock) -> list[int]:
     """Return the epochs nearest to the times, without those after the end."""
-    last = len(clock.times) - 1
-    return sorted({epoch for time in times if (epoch := round(time / clock.step)) <= last})
+    return sorted({clock.nearest(time) for time in times if clock.reaches(time)})
 
 
 class Unscented(FilterPart):

@@ -43,11 +43,12 @@ class FirstSamples(StartPart):
         """Return the initial guess by name, and its variance by name."""
         q_if = data["q_if"][:, : self.samples]
         turns = quaternion.multiply(quaternion.conjugate(q_if[:, :-1]), q_if[:, 1:])
+        steps = clock.steps[: self.samples - 1, None]
         runs = len(q_if)
         guess: Data = {
             "q_ib": q_if[:, 0],
             "q_bf": np.tile([1.0, 0.0, 0.0, 0.0], (runs, 1)),
-            "rate_b": quaternion.log(turns).mean(axis=1) / clock.step,
+            "rate_b": (quaternion.log(turns) / steps).mean(axis=1),
             "moments_b": np.full((runs, 3), 1 / np.sqrt(3)),
         }
         return guess, self.variance.model_dump()
@@ -68,9 +69,9 @@ class FirstPoints(StartPart):
     def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:
         """Return the initial guess by name, NaN without an attitude, and its variance by name."""
         q_if = quaternion.from_matrix(wahba(data["known_point_f"][0], data["measured_point"]))
-        rate = _first_rate(q_if, self.samples) / clock.step
+        rate = _first_rate(q_if, clock.steps, self.samples)
         first = np.argmax(np.isfinite(q_if[..., 0]), axis=-1)
-        turned_back = quaternion.exp(-rate * (clock.step * first)[:, None])
+        turned_back = quaternion.exp(-rate * (clock.times[first] - clock.times[0])[:, None])
         guess: Data = {
             "q_if": quaternion.multiply(q_if[np.arange(len(q_if)), first], turned_back),
             "rate_f": rate,
@@ -79,9 +80,10 @@ class FirstPoints(StartPart):
         return guess, self.variance.model_dump()
 
 
-def _first_rate(q: Array, samples: int) -> Array:
-    """Mean turn (run, 3) in an epoch, of the first ``samples - 1`` pairs of epochs that tell it."""
+def _first_rate(q: Array, steps: Array, samples: int) -> Array:
+    """Mean rate (run, 3) of the first ``samples - 1`` pairs of epochs that tell it."""
     turn = quaternion.log(quaternion.multiply(quaternion.conjugate(q[:, :-1]), q[:, 1:]))
+    turn /= steps[:, None]
     known = np.isfinite(turn).all(axis=-1)
     used = (known & (np.cumsum(known, axis=-1) < samples))[..., None]
     with np.errstate(invalid="ignore"):

@@ -53,10 +53,9 @@ def shown_of(data: Data, measures: list[Measure] | None) -> Shown:
 
 
 def setup_of(data: Data, clock: Clock, measures: list[Measure] | None, raw: bool = False) -> Setup:
-    """Return what is known without error: the leader's orbit, the cameras, the time step."""
+    """Return what is known without error: the leader's orbit, the cameras, the time steps."""
     return setup(
-        len(clock.times),
-        clock.step,
+        clock,
         *kepler.shape_and_anomaly(data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]),
         points=data["start_point_b"].shape[1],
         baseline=float(data["baseline"][0]),

@@ -44,8 +44,8 @@ class _StereoPose(ProblemPart):
 
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors against the truth, or the truth a delay later, and consistency."""
-        step = data["time_s"][1] - data["time_s"][0]
-        return scores(data, round(self.score_delay_s / step))
+        late = Clock(data["time_s"] - data["time_s"][0]).nearest(self.score_delay_s)
+        return scores(data, late)
 
     def truth(self, data: Data) -> Array | None:
         """Return the true states (run, time, n), where they are known."""

@@ -133,10 +133,10 @@ class TumblingAttitude(ProblemPart):
         return data["q_if"]
 
     def model(self, data: Data, clock: Clock) -> Model:
-        """Return process and measurement of one clock step."""
-        integrator = _INTEGRATORS[self.integrator]
+        """Return process and measurement; each epoch has its own step, and all the same noise."""
+        integrator, steps = _INTEGRATORS[self.integrator], clock.steps
         return Model(
-            process=lambda state, _: process(state, clock.step, integrator),
+            process=lambda state, k: process(state, steps[k], integrator),
             measurement=lambda state, _: measured_attitude(state),
             process_noise=self.process_noise.diagonal(),
             measurement_noise=self.measurement_noise * np.eye(4),

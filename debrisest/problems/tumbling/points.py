@@ -54,7 +54,7 @@ class TumblingPoints(ProblemPart):
         noise = float(data["point_noise"].flat[0])
         if not noise > 0.0:
             raise ValueError("points without noise weigh infinitely: noise_m must be positive")
-        return replay_model(data["known_point_f"], _seen(data), noise, clock.step)
+        return replay_model(data["known_point_f"], _seen(data), noise, clock.times)
 
     def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
         """Return the initial state (run, 13) and the covariance (run, 11, 11) of its errors."""

@@ -23,7 +23,7 @@ class TwoObservers:
     written out as a chain of direction cosines.
     """
 
-    CLOCK = Clock(470.0, 1.0)
+    CLOCK = Clock.regular(470.0, 1.0)
     ENDS = np.radians([[5.4, -0.9, 21.8], [5.8, -1.7, 36.5]])
 
     def __init__(self, runs, seed=1, noise=0.0, bias_mrad=0.0, **points):
