@@ -34,7 +34,7 @@ def test_poor_guesses_have_ten_times_the_variance(shipped: Path) -> None:
     cases = load_scenario(shipped / "pesce2017-robust.yaml").cases
     for case in ("A-deg", "B", "C"):
         clean, poor = (
-            cases[name].scenario.sensors["guess"].model_dump() for name in (case, f"P0x10-{case}")
+            cases[name].scenario.starts["guess"].model_dump() for name in (case, f"P0x10-{case}")
         )
         for key in clean.keys() - {"kind"}:
             assert poor[key] ** 2 == pytest.approx(10 * clean[key] ** 2, rel=1e-6)

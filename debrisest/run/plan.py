@@ -10,7 +10,8 @@ from typing import Any
 from debrisest.errors import UserError
 from debrisest.results import store
 from debrisest.run.stages.pipeline import STAGES, stages_of
-from debrisest.scenario.load import Case, LoadedScenario
+from debrisest.scenario.case import Case
+from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import allowed_names
 
 RUNS_PER_FILE = 20
@@ -74,7 +75,7 @@ def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step
         wanted_of = selection.estimators or case.estimators
         estimators = [one for one in case.estimators if one in wanted_of]
         folder = out / scenario.name / name
-        wanted = selection.runs or case.scenario.runs
+        wanted = case.runs(selection.runs)
         for first in range(0, wanted, RUNS_PER_FILE):
             chunk = _Chunk(case, folder, first, min(RUNS_PER_FILE, wanted - first), selection)
             steps += chunk.steps(estimators)

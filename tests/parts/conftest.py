@@ -7,9 +7,9 @@ import pytest
 
 from debrisest.clock import Clock
 from debrisest.draws import Draws
-from debrisest.parts.truth.leader_motion import SeenFromLeader
-from debrisest.parts.truth.orbits import KeplerOrbit
-from debrisest.parts.truth.random_target import RandomPoints
+from debrisest.parts.truth.kepler_orbit import KeplerOrbit
+from debrisest.parts.truth.random_points import RandomPoints
+from debrisest.parts.truth.seen_from_leader import SeenFromLeader
 
 SLOW = [-0.1, -0.1, 0.034]
 

@@ -26,7 +26,7 @@ def kept_epochs(times: list[float], clock: Clock) -> list[int]:
 class Unscented(FilterPart):
     """The unscented Kalman filter; the paper's form does not redraw its sigma points."""
 
-    needs = ("model",)
+    takes = "model"
     kind: Literal["unscented"]
     alpha: Positive = 1.0
     beta: float = 2.0
@@ -52,7 +52,7 @@ class Unscented(FilterPart):
 class Extended(FilterPart):
     """The extended Kalman filter, or with more than one iteration the iterated one."""
 
-    needs = ("model",)
+    takes = "model"
     kind: Literal["extended"]
     iterations: Annotated[int, Field(ge=1)] = 1
     tolerance: Positive = 1e-2

@@ -35,7 +35,7 @@ _SUSPECT = (
 
 class _LandmarkFilter(FilterPart):
     version = 2
-    needs = ("landmark_model",)
+    takes = "landmark_model"
     iterations: Annotated[int, Field(ge=1)] = 3
     gate: bool = True
     keep_s: KeptTimes = []
@@ -155,7 +155,8 @@ class LandmarkFilter(_LandmarkFilter):
 class LandmarkBound(FilterPart):
     """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
 
-    needs = ("landmark_model",)
+    takes = "landmark_model"
+    needs_truth = True
     kind: Literal["landmark_bound"]
     keep_s: KeptTimes = []
 

@@ -19,7 +19,7 @@ class Replay(FilterPart):
     """Maximum a posteriori at every epoch of all measurements so far, or of all there are."""
 
     version = 2
-    needs = ("replay_model",)
+    takes = "replay_model"
     kind: Literal["replay"]
     smoother: bool = False
     gate: bool = False
@@ -48,7 +48,8 @@ class Replay(FilterPart):
 class Efficient(FilterPart):
     """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
 
-    needs = ("replay_model",)
+    takes = "replay_model"
+    needs_truth = True
     kind: Literal["efficient"]
     smoother: bool = False
     keep_s: KeptTimes = []

@@ -122,7 +122,8 @@ class TumblingAttitude(ProblemPart):
 
     version = 2
     needs = ("q_if",)
-    gives = ("model",)
+    model_kind = "model"
+    start_needs = ("q_ib", "q_bf", "rate_b", "moments_b")
     kind: Literal["tumbling_attitude"]
     integrator: Literal["euler", "rk4"]
     process_noise: Variances
@@ -145,13 +146,13 @@ class TumblingAttitude(ProblemPart):
             innovation=sign_free_innovation,
         )
 
-    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+    def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, 14) and covariance (run, 14, 14)."""
-        state = np.concatenate(
-            [guess["q_ib"], guess["q_bf"], guess["rate_b"], guess["moments_b"]], axis=-1
+        state, diagonal = (
+            np.concatenate([parts[name] for name in self.start_needs], axis=-1)
+            for parts in (guess, variance)
         )
-        covariance = Variances(**variance).diagonal()
-        return state, np.broadcast_to(covariance, (len(state), *covariance.shape)).copy()
+        return state, diagonal[..., None] * np.eye(14)
 
     def unpack(self, filtered: Filtered) -> Data:
         """Return the estimated quantities by name, each with its sigma."""

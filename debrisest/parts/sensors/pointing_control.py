@@ -41,12 +41,12 @@ class PointingControl(SimulationPart):
     version = 2
     tried = True
     needs = _INPUTS
-    gives = (
-        *("true_q_ic", "true_euler", "section", "true_pixel", "cameras_at_start"),
-        *("pointing_status", "control_time_s", "torque", "control_pixel"),
-        *("first_section", "settling_time", "stage_one_time"),
+    truths = (
+        *("true_q_ic", "true_euler", "true_pixel", "cameras_at_start", "pointing_status"),
+        *("control_pixel", "first_section", "settling_time", "stage_one_time"),
         *("peak_torque", "total_variation", "final_angle"),
     )
+    knows = ("section", "control_time_s", "torque")
     kind: Literal["pointing_control"]
     inertia_kg_m2: Annotated[list[Vector3], Field(min_length=3, max_length=3)]
     axes: Axes = Field("repaired", description="local orbital axes that angles count from")
