@@ -15,25 +15,36 @@ from debrisest.parts.filters.kalman import Extended, Unscented
 from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
 from debrisest.parts.filters.replay import Replay
 from debrisest.parts.recoveries.basis_pursuit import BasisPursuit
+from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
+from debrisest.parts.sensors.attitude_knowledge import AttitudeKnowledge
 from debrisest.parts.sensors.camera_range import CameraRange
 from debrisest.parts.sensors.detections import Detections
 from debrisest.parts.sensors.feature_points import FeaturePoints
-from debrisest.parts.sensors.pointing import PointingControl
-from debrisest.parts.sensors.stereo_camera import AngularAcceleration, FirstGuess, StereoCamera
-from debrisest.parts.sensors.tracking import AttitudeKnowledge, OrbitGuess, PinholeCamera
+from debrisest.parts.sensors.pinhole_camera import PinholeCamera
+from debrisest.parts.sensors.pointing_control import PointingControl
+from debrisest.parts.sensors.stereo_camera import StereoCamera
+from debrisest.parts.sources.datasets import Datasets
+from debrisest.parts.starts.drawn_orbit import DrawnOrbit
+from debrisest.parts.starts.drawn_pose import DrawnPose
+from debrisest.parts.starts.drawn_shape import DrawnShape
 from debrisest.parts.starts.first_image import FirstImage
-from debrisest.parts.starts.shape_guess import Guessed, ShapeGuess
-from debrisest.parts.starts.starts import Drawn, FirstPoints, FirstSamples
-from debrisest.parts.truth.leader_motion import SeenFromLeader
-from debrisest.parts.truth.motions import GravityGradient, TorqueFree
-from debrisest.parts.truth.observers import Drift, Hold
-from debrisest.parts.truth.orbits import KeplerOrbit, PerturbedOrbit
+from debrisest.parts.starts.first_points import FirstPoints
+from debrisest.parts.starts.first_samples import FirstSamples
+from debrisest.parts.starts.given import GivenGuess
+from debrisest.parts.starts.guess import Guess
+from debrisest.parts.truth.closed_ellipse import ClosedEllipse
+from debrisest.parts.truth.drift import Drift
+from debrisest.parts.truth.gravity_gradient import GravityGradient
+from debrisest.parts.truth.hold import Hold
+from debrisest.parts.truth.kepler_orbit import KeplerOrbit
+from debrisest.parts.truth.perturbed_orbit import PerturbedOrbit
 from debrisest.parts.truth.random_box import RandomBox
-from debrisest.parts.truth.random_target import RandomPoints
+from debrisest.parts.truth.random_points import RandomPoints
 from debrisest.parts.truth.random_tumble import RandomTumble
-from debrisest.parts.truth.relative_ellipse import ClosedEllipse
-from debrisest.parts.truth.satellites import Satellite
-from debrisest.parts.truth.targets import RigidPoints
+from debrisest.parts.truth.rigid_points import RigidPoints
+from debrisest.parts.truth.satellite import Satellite
+from debrisest.parts.truth.seen_from_leader import SeenFromLeader
+from debrisest.parts.truth.torque_free import TorqueFree
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.problems.camera_range.redundant import CameraRangeRedundant
 from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels
@@ -57,15 +68,14 @@ CATALOG: dict[str, list[type[Part]]] = {
         FeaturePoints,
         StereoCamera,
         AngularAcceleration,
-        FirstGuess,
         PinholeCamera,
         PointingControl,
         AttitudeKnowledge,
         Detections,
-        OrbitGuess,
         CameraRange,
-        ShapeGuess,
     ],
+    "measured": [Datasets],
+    "starts": [DrawnPose, DrawnOrbit, DrawnShape, GivenGuess],
     "recovery": [BasisPursuit],
     "problem": [
         TumblingAttitude,
@@ -76,7 +86,7 @@ CATALOG: dict[str, list[type[Part]]] = {
         CameraRangeMinimal,
         OrbitFromPixels,
     ],
-    "start": [FirstSamples, FirstPoints, Drawn, Guessed, FirstImage],
+    "start": [FirstSamples, FirstPoints, Guess, FirstImage],
     "filter": [
         Unscented,
         Extended,

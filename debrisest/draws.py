@@ -6,7 +6,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, Data
 
 
 class Stream(IntEnum):
@@ -48,3 +48,9 @@ class Draws:
                 for run in self.runs
             ]
         return self._generators[stream]
+
+
+def drawn_about(name: str, true: Array, sigma: float, draws: Draws) -> Data:
+    """Return a first guess of ``true`` (run, ...) and its sigma, by name."""
+    noise = draws.normal(Stream.INITIAL_ERROR, true.shape[1:])
+    return {name: true + sigma * noise, f"{name}_sigma": np.full(true.shape, sigma)}

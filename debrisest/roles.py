@@ -1,6 +1,8 @@
 """What a scenario can name: the base of every part, and what each role must be able to do."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Collection
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -61,7 +63,17 @@ class Part(Keys, ABC):
     gives: ClassVar[tuple[str, ...]] = ()
     """Datasets that later parts can count on."""
     extends: ClassVar[tuple[str, ...]] = ()
-    """Datasets that several parts give together, each of them its share."""
+    """Those of them that several parts give together, each of them its share."""
+
+    @classmethod
+    def can_give(cls) -> tuple[str, ...]:
+        """Return the datasets that parts of this kind give."""
+        return cls.gives
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Return the datasets that this very part gives, as its keys have it."""
+        return self.can_give()
 
     @property
     def needed(self) -> tuple[str, ...]:
@@ -74,13 +86,28 @@ class Part(Keys, ABC):
 
 
 class SimulationPart(Part):
-    """Target, orbit, motion, observer or sensor: adds its datasets to what is there already."""
+    """Target, orbit, motion, observer, sensor or start: adds its datasets to what is there.
+
+    Only a simulation has a truth: nothing after the source may need it.
+    """
 
     role = "sensors"
+
+    truths: ClassVar[tuple[str, ...]] = ()
+    """Datasets of what really happens."""
+    knows: ClassVar[tuple[str, ...]] = ()
+    """Datasets of what estimators are told: noise, geometry of cameras, known points."""
+    measures: ClassVar[tuple[str, ...]] = ()
+    """Datasets of what sensors read."""
     frames: ClassVar[dict[str, str]] = {}
     """The axes and origin of datasets whose name does not tell them."""
     tried: ClassVar[bool] = False
     """Whether the first two epochs are simulated when a scenario is read, for it to be refused."""
+
+    @classmethod
+    def can_give(cls) -> tuple[str, ...]:
+        """Return the datasets that parts of this kind give, of all three groups."""
+        return (*cls.truths, *cls.knows, *cls.measures)
 
     @abstractmethod
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
@@ -89,6 +116,23 @@ class SimulationPart(Part):
     def simulate_named(self, name: str, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the same, for a part whose datasets tell the name that the scenario gave it."""
         return self.simulate(data, clock, draws)
+
+
+class SourcePart(Part):
+    """Measured data from files, in the place of a simulation."""
+
+    role = "measured"
+
+    @abstractmethod
+    def read(self, folder: Path) -> Data:
+        """Return what is known and measured, of all runs, with ``run`` and ``time_s``.
+
+        Paths count from ``folder``, the scenario's. UserError tells what is wrong with a file.
+        """
+
+    @abstractmethod
+    def digest(self, folder: Path) -> str:
+        """Return a checksum of what the files hold, by which a change is noticed."""
 
 
 class RecoveryPart(Part):
@@ -109,10 +153,17 @@ class StartPart(Part):
     """Says what is known before the first measurement, in physical quantities."""
 
     role = "start"
+    guesses: ClassVar[tuple[str, ...]] = ()
+    """Quantities of which it gives a first guess."""
+
+    @classmethod
+    def guessed(cls, given: Collection[str]) -> set[str]:
+        """Return the same, for a start to which these datasets are given."""
+        return set(cls.guesses)
 
     @abstractmethod
-    def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:
-        """Return the initial guess by name, and its variance by name."""
+    def start(self, data: Data, clock: Clock) -> tuple[Data, Data]:
+        """Return the initial guess (run, ...) by name, and the variance of its errors by name."""
 
 
 class Given(NamedTuple):
@@ -139,10 +190,31 @@ class Given(NamedTuple):
 class ProblemPart(Part):
     """An estimation problem: what is estimated, from what, by which model.
 
-    It gives the kind of model that a filter needs: ``model`` or ``replay_model``.
+    What it needs is known or measured; what a bound or an error needs beside it is the truth.
     """
 
     role = "problem"
+    model_kind: ClassVar[str]
+    """The kind of model that it hands to a filter."""
+    start_needs: ClassVar[tuple[str, ...]] = ()
+    """Quantities of which it needs a first guess."""
+    true_state: ClassVar[tuple[str, ...]] = ()
+    """Datasets that `truth` is made of."""
+
+    @property
+    def gives_model(self) -> str:
+        """Return the kind of model that this very problem gives, as its keys have it."""
+        return self.model_kind
+
+    @property
+    def start_needed(self) -> tuple[str, ...]:
+        """Return the first guesses that this very problem needs, as its keys have it."""
+        return self.start_needs
+
+    @property
+    def truth_needed(self) -> tuple[str, ...]:
+        """Return the datasets that its truth is made of, as its keys have it."""
+        return self.true_state
 
     @abstractmethod
     def measurements(self, data: Data) -> Array:
@@ -153,7 +225,7 @@ class ProblemPart(Part):
         """Return process and measurement as functions of the state, as the filters know them."""
 
     @abstractmethod
-    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+    def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, n) and covariance (run, n, n)."""
 
     @abstractmethod
@@ -165,12 +237,22 @@ class ProblemPart(Part):
         """Return the filter's errors, as far as ``data`` holds a truth."""
 
     def truth(self, data: Data) -> Array | None:
-        """Return the true states (run, time, n), where they are known and a bound is wanted."""
+        """Return the true states (run, time, n) of a simulation, where a bound is possible."""
         return None
 
 
 class FilterPart(Part):
-    """A filter algorithm and its settings; it needs the kind of model that a problem gives."""
+    """A filter algorithm and its settings."""
+
+    takes: ClassVar[str]
+    """The kind of model that it takes."""
+    needs_truth: ClassVar[bool] = False
+    """Whether it is linearised at the truth, as bounds are."""
+
+    @property
+    def uses_truth(self) -> bool:
+        """Return whether this very filter needs the truth, as its keys have it."""
+        return self.needs_truth
 
     role = "filter"
 

@@ -87,7 +87,7 @@ def tumbling(runs: int, epochs: int) -> tuple[Model, Array, Array, Array]:
     measured = quaternion.normalize(q + noise)
     state = np.concatenate([q[0], [1, 0, 0, 0], RATE, np.full(3, 1 / np.sqrt(3))])
     return (
-        problem.model({}, Clock(float(epochs), 1.0)),
+        problem.model({}, Clock.regular(epochs, 1.0)),
         np.tile(state, (runs, 1)),
         np.tile(START.diagonal(), (runs, 1, 1)),
         measured,
@@ -145,7 +145,7 @@ def stereo_pose(runs: int, epochs: int) -> tuple[Array, Array, StereoGeometry]:
     start[:, :9] = [10, 60, 10, 0.01, -0.0225, -0.01, *np.radians([-0.1, -0.1, 0.034])]
     start[:, 9:15] = [0, 0, 0, 1, -0.186, -0.0797]
     start[:, 15:] = rng.uniform(-1.5, 1.5, (runs, 15))
-    known = stereo_geometry(epochs, 1.0, *ORBIT)
+    known = stereo_geometry(Clock.regular(epochs, 1.0), *ORBIT)
     truth = simulate_truth(np.arange(float(epochs)), start, *ORBIT)
     shown = np.stack([measurement(known, truth[:, k], k) for k in range(epochs)], axis=1)
     guess = draw_guess(start, VARIANCE, rng.standard_normal(start.shape))

@@ -32,7 +32,7 @@ from debrisest.roles import (
 
 
 class Wheel(SimulationPart):
-    gives = ("true_point_b",)
+    truths = ("true_point_b",)
     kind: Literal["wheel"]
     radius_m: Positive
 
@@ -45,7 +45,7 @@ class Wheel(SimulationPart):
 
 
 class Spin(SimulationPart):
-    gives = ("true_q_ib", "true_rate_b")
+    truths = ("true_q_ib", "true_rate_b")
     kind: Literal["spin"]
     rate_deg_s: float
 
@@ -63,7 +63,7 @@ class Spin(SimulationPart):
 
 class Plane(SimulationPart):
     needs = ("true_point_b", "true_q_ib")
-    gives = ("measured_point",)
+    measures = ("measured_point",)
     kind: Literal["plane"]
     noise_m: Positive
 
@@ -90,17 +90,19 @@ class Unwrap(RecoveryPart):
 
 
 class Wide(StartPart):
+    guesses = ("rate_b",)
     kind: Literal["wide"]
     variance: Positive
 
     def start(self, data, clock):
         runs = len(data["q_if"])
-        return {"rate_b": np.zeros((runs, 2))}, {"rate": self.variance}
+        return {"rate_b": np.zeros((runs, 2))}, {"rate_b": np.full((runs, 2), self.variance)}
 
 
 class ConstantSpin(ProblemPart):
     needs = ("q_if",)
-    gives = ("model",)
+    model_kind = "model"
+    start_needs = ("rate_b",)
     kind: Literal["constant_spin"]
     angle_noise_deg: Positive
 
@@ -120,7 +122,7 @@ class ConstantSpin(ProblemPart):
 
     def pack(self, guess, variance):
         state = guess["rate_b"]
-        return state, np.tile(variance["rate"] * np.eye(2), (len(state), 1, 1))
+        return state, variance["rate_b"][..., None] * np.eye(2)
 
     def unpack(self, filtered):
         return {"rate_b": about_z(filtered.state), "rate_b_sigma": about_z(filtered.sigma)}
@@ -136,7 +138,7 @@ def about_z(values):
 
 
 class Kalman(FilterPart):
-    needs = ("model",)
+    takes = "model"
     kind: Literal["kalman"]
 
     def run(self, model: Model, given: Given) -> Estimates:

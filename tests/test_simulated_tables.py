@@ -20,7 +20,8 @@ EPOCHS, RUNS = 10, 30
 class Beacon(SimulationPart):
     """A lamp whose brightness grows with time, from a level that is drawn."""
 
-    gives = ("beacon", "beacon_drift", "beacon_axes", "measured_point")
+    truths = ("beacon", "beacon_drift", "beacon_axes")
+    measures = ("measured_point",)
     kind: Literal["beacon"]
     drift_deg_s: Positive
     fails: bool = False

@@ -108,10 +108,11 @@ def translation_step(
     )
 
 
-def transitions(leader: Leader, step: float, mu: float = MU_EARTH) -> Array:
+def transitions(leader: Leader, steps: Array, mu: float = MU_EARTH) -> Array:
     """Transition matrices ``(epoch, 6, 6)`` of position and velocity from the first epoch on.
 
-    ``leader`` is the orbit every half ``step``, at ``2 epochs - 1`` times. The motion is linearised
+    ``leader`` is the orbit at all epochs and midway between them, at ``2 epochs - 1`` times;
+    ``steps (epoch - 1,)`` is the time from each epoch to the next, s. The motion is linearised
     at the leader itself, so that one set serves every target: the error is the ratio of the
     distance to the orbit's radius, about 1e-5, of what gravity's gradient contributes.
     """
@@ -119,7 +120,8 @@ def transitions(leader: Leader, step: float, mu: float = MU_EARTH) -> Array:
     seeds = 1j * step_of_complex * np.eye(6)
     position, velocity = seeds[:, :3], seeds[:, 3:]
     result = [np.eye(6)]
-    for k in range(0, len(leader.radius) - 2, 2):
+    for epoch, step in enumerate(steps):
+        k = 2 * epoch
         moments = leader.at(k), leader.at(k + 1), leader.at(k + 2)
         position, velocity = translation_step(position, velocity, moments, step, mu)
         result.append(np.concatenate([position, velocity], axis=-1).imag.T / step_of_complex)

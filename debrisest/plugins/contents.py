@@ -71,7 +71,7 @@ def _undeclared(part: type[Part], quantities: Mapping[str, Quantity]) -> str:
     """Return which datasets a simulation gives that neither the vocabulary has nor the plug-in."""
     if not issubclass(part, SimulationPart):
         return ""
-    names = {*part.gives, *part.extends} - VOCABULARY.keys() - quantities.keys()
+    names = {*part.can_give(), *part.extends} - VOCABULARY.keys() - quantities.keys()
     return f"QUANTITIES must declare {', '.join(sorted(names))}, which it gives" if names else ""
 
 

@@ -126,8 +126,9 @@ def _submit(pool: Executor, step: Step) -> Future[None]:
 def run_step(step: Step) -> None:
     """Compute one step and write its file."""
     stage, estimator = STAGES[step.address.stage], step.address.estimator
-    result = isolate(lambda data: _declared(stage.run(step.case, estimator, data)), _read(step))
-    times = step.case.scenario.clock.times
+    read = _read(step)
+    result = isolate(lambda data: _declared(stage.run(step.case, estimator, data)), read)
+    times = read["time_s"] if step.upstream else step.case.clock.times
     frames = step.case.scenario.frames
     store.write(step.path, {"time_s": times, **result}, _attributes(step), frames)
 

@@ -13,7 +13,8 @@ from debrisest.results.address import Address
 from debrisest.results.assessed import SIMULATED
 from debrisest.results.status import Wanted, out_of_date
 from debrisest.run.stages.pipeline import STAGES, stages_of
-from debrisest.scenario.load import Case, LoadedScenario
+from debrisest.scenario.case import Case
+from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import allowed_names
 
 RUNS_PER_FILE = 20
@@ -53,7 +54,7 @@ def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step
         case = scenario.cases[name]
         wanted_of = selection.estimators or case.estimators
         estimators = [one for one in case.estimators if one in wanted_of]
-        wanted = selection.runs or case.scenario.runs
+        wanted = case.runs(selection.runs)
         for first in range(0, wanted, RUNS_PER_FILE):
             chunk = _Chunk(case, out, first, min(RUNS_PER_FILE, wanted - first), selection)
             steps += chunk.steps(estimators)

@@ -1,13 +1,13 @@
 """What must fit together across the keys of a scenario, each problem with its key path."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from debrisest.arrays import Data
 from debrisest.assessment.statistics import window_mask
-from debrisest.catalog import CATALOG, kind_of
 from debrisest.clock import Clock
 from debrisest.draws import Draws
-from debrisest.roles import Part
+from debrisest.scenario.case import Case
+from debrisest.scenario.contracts import Found, parts_that_do_not_fit
 from debrisest.scenario.document import KeyPath
 from debrisest.scenario.kept import kept_too_late, not_kept
 from debrisest.scenario.mistakes import allowed_names
@@ -19,26 +19,35 @@ RESERVED = ("plots", "tables.csv", "tables.md", "tables.tex")
 """Names beside the folders of the cases."""
 _TOO_MUCH = "two epochs of one run take more memory than there is; a number here is far too large"
 
-Found = Iterator[tuple[KeyPath, str]]
 
-
-def scenario_problems(scenario: Scenario, case: str = "") -> Found:
+def case_problems(case: Case) -> Found:
     """Yield what does not fit together within one case."""
+    found = [] if case.source else list(_wrong_epochs(case.scenario))
+    yield from found
+    if not found:
+        yield from parts_that_do_not_fit(case)
+        yield from _windows(case)
+        yield from kept_too_late(case)
+
+
+def _wrong_epochs(scenario: Scenario) -> Found:
+    if scenario.step_s is None:
+        yield ("step_s",), "this key is missing"
+        return
     epochs = scenario.duration_s / scenario.step_s
     if not 2 <= epochs <= MOST_EPOCHS:
         yield ("step_s",), f"gives {epochs:.3g} epochs; from 2 to {MOST_EPOCHS} are possible"
-        return
-    if abs(epochs - round(epochs)) > 1e-9 * epochs:
+    elif abs(epochs - round(epochs)) > 1e-9 * epochs:
         yield ("duration_s",), f"must be a whole number of steps of {scenario.step_s:g} s"
-    yield from _parts_that_lack_data(scenario)
-    yield from _windows(scenario)
-    yield from kept_too_late(scenario, case)
+    if not scenario.sensors:
+        yield ("sensors",), "this key is missing: nothing would be measured"
 
 
-def file_problems(cases: Mapping[str, Scenario]) -> Found:
+def file_problems(cases: Mapping[str, Case]) -> Found:
     """Yield what does not fit together between the cases of a file."""
-    first = next(iter(cases.values()))
-    for name, scenario in cases.items():
+    first = next(iter(cases.values())).scenario
+    for name, case in cases.items():
+        scenario = case.scenario
         if name in RESERVED:
             yield ("cases", name), "this name is taken by a file of results; choose another"
         if list(scenario.estimators) != list(first.estimators):
@@ -46,7 +55,7 @@ def file_problems(cases: Mapping[str, Scenario]) -> Found:
         if scenario.tables != first.tables:
             yield ("cases", name, "tables"), "tables belong to the whole file, not to a case"
     yield from _unknown_cases(first, list(cases))
-    refused = (found for scenario in cases.values() for found in _parts_that_refuse(scenario))
+    refused = (found for case in cases.values() for found in _parts_that_refuse(case))
     yield from dict.fromkeys(refused)
     for index, table in enumerate(first.tables.layout):
         path = ("tables", "layout", index)
@@ -56,43 +65,12 @@ def file_problems(cases: Mapping[str, Scenario]) -> Found:
             yield from not_kept((*path, "windows"), table, cases)
 
 
-def _parts_that_lack_data(scenario: Scenario) -> Found:
-    given: set[str] = set()
-    for name, part in scenario.simulation.items():
-        yield from _lacks(tuple(name.split(".", 1)), part, given)
-    for name, estimator in scenario.estimators.items():
-        here = set(given)
-        for role in ("recovery", "start", "problem", "filter"):
-            part = getattr(estimator, role)
-            if part is not None:
-                yield from _lacks(("estimators", name, role), part, here)
-
-
-def _lacks(path: KeyPath, part: Part, given: set[str]) -> Found:
-    missing = [name for name in part.needed if name not in given]
-    if missing:
-        givers = sorted(
-            f"{role} {kind_of(giver)}"
-            for role, parts in CATALOG.items()
-            for giver in parts
-            if set(missing) & {*giver.gives, *giver.extends}
-        )
-        yield (
-            path,
-            f"{kind_of(type(part))} needs {', '.join(missing)}, which no part before it gives; "
-            f"add one of: {', '.join(givers)}",
-        )
-    for name in sorted(set(part.gives) & given):
-        yield path, f"{name} is given by an earlier part already; only one part may give it"
-    given.update(part.gives, part.extends)
-
-
-def _parts_that_refuse(scenario: Scenario) -> Found:
+def _parts_that_refuse(case: Case) -> Found:
     """Simulate one run of the first epochs, where a part wants it."""
-    parts = scenario.simulation
+    parts = case.scenario.simulation
     if not any(part.tried for part in parts.values()):
         return
-    clock, draws = Clock(2 * scenario.step_s, scenario.step_s), Draws(scenario.seed, "", [0])
+    clock, draws = Clock(case.clock.times[:2]), Draws(case.scenario.seed, "", [0])
     data: Data = {"time_s": clock.times}
     for path, part in parts.items():
         try:
@@ -105,8 +83,8 @@ def _parts_that_refuse(scenario: Scenario) -> Found:
             return
 
 
-def _windows(scenario: Scenario) -> Found:
-    tables, duration = scenario.tables, scenario.duration_s
+def _windows(case: Case) -> Found:
+    tables, duration = case.scenario.tables, case.scenario.duration_s
     named: list[tuple[KeyPath, str]] = [
         (("tables", "layout", index, "windows", number), window)
         for index, table in enumerate(tables.layout)
@@ -123,13 +101,13 @@ def _windows(scenario: Scenario) -> Found:
     for path, window in named:
         if window_of(window, duration)[1] > duration:
             yield path, f"{window} goes beyond the scenario, which lasts {duration:g} s"
-        elif not window_mask(scenario.clock.times, window_of(window, duration)).any():
+        elif not window_mask(case.clock.times, window_of(window, duration)).any():
             yield path, f"{window} holds no epoch"
 
 
-def _not_simulated(path: KeyPath, table: Table, cases: Mapping[str, Scenario]) -> Found:
-    parts = [part for scenario in cases.values() for part in scenario.simulation.values()]
-    given = {name for part in parts for name in (*part.gives, *part.extends)}
+def _not_simulated(path: KeyPath, table: Table, cases: Mapping[str, Case]) -> Found:
+    parts = [part for case in cases.values() for part in case.scenario.simulation.values()]
+    given = {name for part in parts for name in part.given}
     shown = {name for name in given if VOCABULARY[name].table_unit}
     for name in table.quantities:
         if name not in shown:

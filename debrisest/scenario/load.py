@@ -3,17 +3,14 @@
 import itertools
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from functools import cached_property, reduce
+from functools import reduce
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import yaml
-from pydantic import ValidationError
-
 from debrisest.errors import UserError
 from debrisest.plugins.load import Plugin, load_plugins
-from debrisest.scenario.checks import file_problems, scenario_problems
+from debrisest.scenario.case import Case
+from debrisest.scenario.checks import case_problems, file_problems
 from debrisest.scenario.document import (
     Document,
     KeyPath,
@@ -23,47 +20,15 @@ from debrisest.scenario.document import (
     parse,
     sub_document,
 )
-from debrisest.scenario.mistakes import allowed_names, problems_of
+from debrisest.scenario.measured import told_by_data
+from debrisest.scenario.mistakes import allowed_names, validated
 from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
 
 NOMINAL = "nominal"
 """The case of a scenario that has neither cases nor a grid."""
 
-_NAMED = ("observers", "sensors", "estimators")
+_NAMED = ("observers", "sensors", "starts", "estimators")
 """Keys whose entries have names of the user's choice."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """One experiment: a scenario with the case's changes and the overrides laid on it.
-
-    Only plain data travels to other processes; the scenario is validated again where it is used.
-    """
-
-    scenario_name: str
-    name: str
-    document: dict[str, Any]
-    plugins: tuple[Plugin, ...] = ()
-
-    @cached_property
-    def scenario(self) -> Scenario:
-        """Return the validated scenario of this case."""
-        load_plugins(self.plugins)
-        scenario: Scenario = scenario_model().model_validate(self.document)
-        return scenario
-
-    @property
-    def estimators(self) -> list[str]:
-        """Return the estimators that are used in this case."""
-        every = self.scenario.estimators.items()
-        return [name for name, one in every if one.cases is None or self.name in one.cases]
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {key: value for key, value in self.__dict__.items() if key != "scenario"}
-
-    def as_yaml(self) -> str:
-        """Return the resolved scenario as YAML."""
-        return yaml.safe_dump(self.scenario.model_dump(mode="json"), sort_keys=False)
 
 
 class LoadedScenario(NamedTuple):
@@ -93,19 +58,18 @@ def load_scenario(
         raise UserError(map(str, problems))
     laid_on = [_override(text, document) for text in overrides]
     own: dict[str, Any] = {k: v for k, v in document.value.items() if k in ("cases", "grid")}
-    listed, found = _validated(Document(own, document.places), CasesAndGrid)
+    listed, found = validated(Document(own, document.places), CasesAndGrid, path.parent)
     problems += found
     cases: dict[str, Case] = {}
     for name, case_document in _case_documents(document, listed or CasesAndGrid()).items():
-        complete = reduce(merge, laid_on, case_document)
-        scenario, found = _validated(complete, scenario_model())
-        problems += found
-        if scenario is not None:
-            problems += _placed(complete, scenario_problems(scenario, name))
-            cases[name] = Case(path.stem, name, complete.value, loaded)
+        complete, wrong = told_by_data(reduce(merge, laid_on, case_document), path.parent)
+        scenario, found = validated(complete, scenario_model(), path.parent)
+        problems += wrong + found
+        if scenario is not None and not wrong:
+            cases[name] = Case(path.stem, name, complete.value, path.parent, loaded)
+            problems += _placed(complete, case_problems(cases[name]))
     if not problems:
-        scenarios = {name: case.scenario for name, case in cases.items()}
-        problems = _placed(document, file_problems(scenarios))
+        problems = _placed(document, file_problems(cases))
     if problems:
         raise UserError(dict.fromkeys(map(str, problems)))
     return LoadedScenario(path, cases)
@@ -146,13 +110,6 @@ def _override(text: str, document: Document) -> Document:
     if role in _NAMED and isinstance(known, dict) and named and named[0] not in known:
         raise UserError(f"{place}: unknown name {named[0]!r}; {allowed_names(named[0], known)}")
     return _nested(tuple(key.split(".")), parsed.value["value"], place)
-
-
-def _validated(document: Document, model: Any) -> tuple[Any, list[Problem]]:
-    try:
-        return model.model_validate(document.value), []
-    except ValidationError as error:
-        return None, problems_of(error, document, model)
 
 
 def _placed(document: Document, found: Iterable[tuple[KeyPath, str]]) -> list[Problem]:

@@ -2,12 +2,21 @@
 
 import difflib
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from debrisest.scenario.document import Document, KeyPath, Problem
+
+
+def validated(document: Document, model: Any, folder: Path) -> tuple[Any, list[Problem]]:
+    """Return what a model makes of a document, or None and what is wrong with it."""
+    try:
+        return model.model_validate(document.value, context={"folder": folder}), []
+    except ValidationError as error:
+        return None, problems_of(error, document, model)
 
 
 def problems_of(

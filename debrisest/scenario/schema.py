@@ -18,6 +18,7 @@ from debrisest.roles import (
     ProblemPart,
     RecoveryPart,
     SimulationPart,
+    SourcePart,
     StartPart,
     Window,
 )
@@ -137,6 +138,12 @@ class Estimator(Keys):
 _NAME = Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.+=,-]{0,99}$")]
 
 
+TOLD_BY_DATA = ("seed", "runs", "duration_s")
+"""Keys of a simulation that measured data tell."""
+SIMULATED = (*TOLD_BY_DATA, "step_s", "target", "orbit", "motion", "observers", "sensors")
+"""Keys in whose place `measured` stands."""
+
+
 class Scenario(Keys):
     """One case of a scenario, everything resolved."""
 
@@ -145,27 +152,31 @@ class Scenario(Keys):
     seed: Annotated[int, Field(ge=0, lt=2**63)]
     runs: Annotated[int, Field(ge=1)]
     duration_s: Positive
-    step_s: Positive
+    step_s: Positive | None = None
+    measured: SourcePart | None = None
     target: SimulationPart | None = None
     orbit: SimulationPart | None = None
     motion: SimulationPart | None = None
     observers: dict[str, SimulationPart] = {}
-    sensors: dict[str, SimulationPart]
+    sensors: dict[str, SimulationPart] = {}
+    starts: dict[str, SimulationPart] = {}
     estimators: dict[_NAME, Estimator]
     tables: Tables = Tables()
 
     @property
     def clock(self) -> Clock:
-        """Return the time grid."""
-        return Clock(self.duration_s, self.step_s)
+        """Return the epochs of a simulation."""
+        return Clock.regular(self.duration_s, self.step_s or self.duration_s)
 
     @property
     def simulation(self) -> dict[str, SimulationPart]:
         """Return the parts of the simulation in the order in which data passes through them."""
         alone = {"target": self.target, "orbit": self.orbit, "motion": self.motion}
         parts = {name: part for name, part in alone.items() if part is not None}
-        parts |= {f"observers.{name}": part for name, part in self.observers.items()}
-        return parts | {f"sensors.{name}": part for name, part in self.sensors.items()}
+        named = {"observers": self.observers, "sensors": self.sensors, "starts": self.starts}
+        return parts | {
+            f"{role}.{name}": part for role, each in named.items() for name, part in each.items()
+        }
 
     @property
     def frames(self) -> dict[str, str]:
@@ -179,6 +190,12 @@ class Scenario(Keys):
         if self.tables.scored_window is None:
             return (self.duration_s * 2 / 3, self.duration_s)
         return window_of(self.tables.scored_window, self.duration_s)
+
+
+class Measured(Keys):
+    """The key of a scenario file that says where measured data come from."""
+
+    measured: SourcePart
 
 
 class CasesAndGrid(Keys):
@@ -207,9 +224,17 @@ def scenario_model(base: type[Scenario] = Scenario) -> Any:
         orbit=(_kinds("orbit") | None, None),
         motion=(_kinds("motion") | None, None),
         observers=(_by_name(_kinds("observers")), {}),
-        sensors=(_by_name(_kinds("sensors")), ...),
+        measured=(_kinds("measured") | None, None),
+        sensors=(_by_name(_kinds("sensors")), {}),
+        starts=(_by_name(_kinds("starts")), {}),
         estimators=(_by_name(estimator), ...),
     )
+
+
+def measured_model() -> Any:
+    """Return the model of `measured` alone, with the catalog's kinds."""
+    create: Any = create_model
+    return create("Measured", __base__=Measured, measured=(_kinds("measured"), ...))
 
 
 def _by_name(value: Any) -> Any:

@@ -93,7 +93,7 @@ def test_transitions_match_differences():
     """Also far from the leader, where the linearisation is made, within what is promised."""
     epochs = 100
     leader = leader_orbit(np.arange(2 * epochs + 1) * 0.5, AXIS, ECCENTRICITY, 0.0)
-    matrix = transitions(leader, 1.0)[-1]
+    matrix = transitions(leader, np.ones(len(leader.radius) // 2))[-1]
     for index in range(6):
         change = np.zeros(6)
         change[index] = 1.0

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from debrisest.clock import Clock
 from debrisest.dynamics.inertia_ratios import ratios
 from debrisest.dynamics.kepler import MU_EARTH
 from debrisest.dynamics.relative_orbit import leader_orbit, relative_acceleration
@@ -44,7 +45,7 @@ def starts(case, runs, seed=0):
 def bound(case, acceleration_noise=None):
     """Sigma (run, time) of attitude, k1 and k2 of the efficient filter and smoother, 100 s."""
     shown = stereo_pose.Shown(acceleration=acceleration_noise is not None)
-    known = stereo_pose.stereo_geometry(101, 1.0, *ORBIT, shown=shown)
+    known = stereo_pose.stereo_geometry(Clock.regular(101, 1.0), *ORBIT, shown=shown)
     truth = simulate_truth(np.arange(101.0), starts(case, 10), *ORBIT)
     exact = np.stack([stereo_pose.measurement(known, truth[:, k], k) for k in range(101)], axis=1)
     sigma = np.full(exact.shape[-1], 1e-5)
@@ -166,7 +167,7 @@ def test_disparity_of_the_same_pixels_is_nothing_new():
 
 def test_equation_46_leaves_out_what_the_ratios_do_to_the_attitude():
     """After one second the attitude depends on the ratios by 1/2 t^2; as printed, not at all."""
-    known = stereo_pose.stereo_geometry(3, 1.0, *ORBIT)
+    known = stereo_pose.stereo_geometry(Clock.regular(3, 1.0), *ORBIT)
     state = starts("C", 1)
     exact = process_jacobian(known, state, 0)[0, 9:13, 13:15]
     printed = first_order_transition(known, state, 0)[0, 9:13, 13:15]
@@ -188,7 +189,7 @@ def test_equation_55_knows_neither_signs_nor_small_angles():
 def test_a_tolerance_of_one_percent_iterates_at_the_start_only(tolerance, iterated):
     """The state's norm is that of a target 60 m away; later corrections are a part of a metre."""
     runs, rng = 10, np.random.default_rng(3)
-    known = stereo_pose.stereo_geometry(21, 1.0, *ORBIT)
+    known = stereo_pose.stereo_geometry(Clock.regular(21, 1.0), *ORBIT)
     truth = simulate_truth(np.arange(21.0), starts("A", runs), *ORBIT)
     shown = [stereo_pose.measurement(known, truth[:, k], k) for k in range(21)]
     measured = np.stack(shown, axis=1) + 1e-5 * rng.normal(size=(runs, 21, 45))

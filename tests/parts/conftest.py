@@ -7,9 +7,9 @@ import pytest
 
 from debrisest.clock import Clock
 from debrisest.draws import Draws
-from debrisest.parts.truth.leader_motion import SeenFromLeader
-from debrisest.parts.truth.orbits import KeplerOrbit
-from debrisest.parts.truth.random_target import RandomPoints
+from debrisest.parts.truth.kepler_orbit import KeplerOrbit
+from debrisest.parts.truth.random_points import RandomPoints
+from debrisest.parts.truth.seen_from_leader import SeenFromLeader
 
 SLOW = [-0.1, -0.1, 0.034]
 
@@ -19,7 +19,7 @@ def simulated() -> Callable:
     """Simulate a random target seen from an eccentric orbit, and further parts."""
 
     def run(*parts, runs=4, duration=10.0, step=1.0, rate=SLOW, first=0, seed=1):
-        clock = Clock(duration, step)
+        clock = Clock.regular(duration, step)
         draws = Draws(seed, "case", list(range(first, first + runs)))
         data = {"time_s": clock.times, "run": np.arange(runs)}
         target = RandomPoints(

@@ -54,7 +54,7 @@ def given() -> Given:
     scans = np.stack([own, clutter], axis=-2)
     guess = truth[:, 0] + 0.3 * rng.normal(size=(RUNS, 2))
     covariance = np.stack([0.09 * np.eye(2)] * RUNS)
-    return Given(guess, covariance, scans, Clock((EPOCHS - 1) * 2.0, 2.0), truth)
+    return Given(guess, covariance, scans, Clock.regular((EPOCHS - 1) * 2.0, 2.0), truth)
 
 
 def associate(**keys):

@@ -12,16 +12,17 @@ from debrisest.filters.estimates import Estimates
 from debrisest.parts.filters.bound import LandmarkBound
 from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
 from debrisest.parts.sensors.camera_range import CameraRange
+from debrisest.parts.starts.drawn_shape import DrawnShape
 from debrisest.parts.starts.first_image import FirstImage
-from debrisest.parts.starts.shape_guess import Guessed, ShapeGuess
-from debrisest.parts.truth.motions import GravityGradient
-from debrisest.parts.truth.orbits import KeplerOrbit
-from debrisest.parts.truth.relative_ellipse import ClosedEllipse
-from debrisest.parts.truth.targets import RigidPoints
+from debrisest.parts.starts.guess import Guess
+from debrisest.parts.truth.closed_ellipse import ClosedEllipse
+from debrisest.parts.truth.gravity_gradient import GravityGradient
+from debrisest.parts.truth.kepler_orbit import KeplerOrbit
+from debrisest.parts.truth.rigid_points import RigidPoints
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.roles import Given
 
-CLOCK = Clock(300.0, 5.0)
+CLOCK = Clock.regular(300.0, 5.0)
 WINDOWS = {"windows_s": [50, 100, 200, 900], "spacing_s": [5, 5, 5, 5], "extended_s": []}
 CORNERS = [[x, y, z] for x in (1, -1) for y in (0.75, -0.75) for z in (0.5, -0.5)]
 POINTS = [*CORNERS, [0.35, 2, 0.1], [0, -0.3, 0.9]]
@@ -43,7 +44,7 @@ def data():
             velocity_m_s=[9.3358198e-3, -1.078007613e-2, -1.12316e-3],
         ),
         CameraRange(kind="camera_range"),
-        ShapeGuess(kind="shape_guess"),
+        DrawnShape(kind="drawn_shape"),
     ]
     draws = Draws(1, "short", range(3))
     found = {"time_s": CLOCK.times}
@@ -92,7 +93,7 @@ def test_the_first_image_gives_the_direction(data) -> None:
     )
     error = np.linalg.norm(position - data["chaser_position_h"][:, 0], axis=-1)
     assert (error < 1.0).all()  # m: the middle of the points is not the centre of mass
-    drawn, _ = Guessed(kind="guessed").start(data, CLOCK)
+    drawn, _ = Guess(kind="guess").start(data, CLOCK)
     np.testing.assert_array_equal(guess["rate_b"], drawn["rate_b"])
 
 
@@ -206,7 +207,7 @@ def test_a_run_that_does_not_fit_says_so(data) -> None:
 
 def test_the_bound_needs_a_truth(data) -> None:
     chosen = problem()
-    state, covariance = chosen.pack(*Guessed(kind="guessed").start(data, CLOCK))
+    state, covariance = chosen.pack(*Guess(kind="guess").start(data, CLOCK))
     given = Given(state, covariance, chosen.measurements(data), CLOCK)
     with pytest.raises(ValueError, match="linearised at the truth"):
         LandmarkBound(kind="landmark_bound").run(chosen.model(data, CLOCK), given)

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import kepler
-from debrisest.parts.sensors.pointing import PointingControl
+from debrisest.parts.sensors.pointing_control import PointingControl
 
 INERTIA = [[1.066e-3, -4e-6, 7e-6], [-4e-6, 1.042e-3, 5e-6], [7e-6, 5e-6, 9.62e-4]]
 KEYS = {"kind": "pointing_control", "inertia_kg_m2": INERTIA, "robust_term": "conditional"}
@@ -28,8 +28,8 @@ def scene(duration: int, runs: int) -> dict[str, np.ndarray]:
 
 def simulate(data: dict[str, np.ndarray], runs: list[int], **keys: object) -> dict:
     part = PointingControl(**KEYS | keys)
-    result = part.simulate(data, Clock(len(data["time_s"]), 1.0), Draws(1, "case", runs))
-    assert set(result) == set(part.gives)
+    result = part.simulate(data, Clock.regular(len(data["time_s"]), 1.0), Draws(1, "case", runs))
+    assert set(result) == set(part.given)
     return result
 
 

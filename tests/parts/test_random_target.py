@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from debrisest.parts.truth.random_target import RandomPoints
+from debrisest.parts.truth.random_points import RandomPoints
 
 
 def test_points_fill_the_box_evenly(simulated: Callable) -> None:

@@ -1,6 +1,7 @@
 """What the two cameras, the acceleration and the first guess of a leader give."""
 
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Literal
 
 import numpy as np
@@ -9,12 +10,14 @@ from pydantic import ValidationError
 from scipy.spatial.transform import Rotation
 
 from debrisest.attitude import quaternion
-from debrisest.parts.sensors.stereo_camera import AngularAcceleration, FirstGuess, StereoCamera
-from debrisest.parts.truth.leader_motion import SeenFromLeader
-from debrisest.parts.truth.orbits import KeplerOrbit
-from debrisest.parts.truth.random_target import RandomPoints
+from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
+from debrisest.parts.sensors.stereo_camera import StereoCamera
+from debrisest.parts.starts.drawn_pose import DrawnPose
+from debrisest.parts.truth.kepler_orbit import KeplerOrbit
+from debrisest.parts.truth.random_points import RandomPoints
+from debrisest.parts.truth.seen_from_leader import SeenFromLeader
 from debrisest.roles import SimulationPart
-from debrisest.scenario.checks import scenario_problems
+from debrisest.scenario.contracts import parts_that_do_not_fit
 from debrisest.scenario.schema import Scenario
 
 TINY, STEP = 1e-14, 0.01
@@ -25,9 +28,9 @@ def camera(**keys) -> StereoCamera:
     return StereoCamera(kind="stereo_camera", **({"baseline_m": 1.0} | given | keys))
 
 
-def guess() -> FirstGuess:
-    return FirstGuess(
-        kind="first_guess",
+def guess() -> DrawnPose:
+    return DrawnPose(
+        kind="drawn_pose",
         position_sigma_m=1.0,
         velocity_sigma_m_s=0.5,
         rate_sigma_deg_s=2.0,
@@ -131,7 +134,7 @@ def test_missing_features_come_on_top_of_hidden_ones(simulated: Callable) -> Non
 class Bare(SimulationPart):
     """A target whose surface nobody knows."""
 
-    gives = ("true_point_b", "true_inertia_ratio")
+    truths = ("true_point_b", "true_inertia_ratio")
     kind: Literal["bare"] = "bare"
 
     def simulate(self, data, clock, draws):
@@ -162,7 +165,8 @@ def test_occlusion_needs_normals(occlusion: bool, bare: bool) -> None:
         sensors={"cameras": camera(occlusion=occlusion)},
         estimators={},
     )
-    problems = list(scenario_problems(scenario))
+    case = SimpleNamespace(scenario=scenario, source=None, measured={}, estimators=[])
+    problems = list(parts_that_do_not_fit(case))
     assert len(problems) == (occlusion and bare)
     for path, message in problems:
         assert path == ("sensors", "cameras")

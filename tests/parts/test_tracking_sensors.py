@@ -11,10 +11,13 @@ from debrisest.arrays import Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import kepler
+from debrisest.parts.sensors.attitude_knowledge import AttitudeKnowledge
 from debrisest.parts.sensors.detections import Detections
-from debrisest.parts.sensors.tracking import AttitudeKnowledge, OrbitGuess, PinholeCamera
-from debrisest.parts.truth.orbits import KeplerOrbit, PerturbedOrbit
-from debrisest.parts.truth.satellites import Satellite
+from debrisest.parts.sensors.pinhole_camera import PinholeCamera
+from debrisest.parts.starts.drawn_orbit import DrawnOrbit
+from debrisest.parts.truth.kepler_orbit import KeplerOrbit
+from debrisest.parts.truth.perturbed_orbit import PerturbedOrbit
+from debrisest.parts.truth.satellite import Satellite
 from debrisest.sensors.detections import unlabelled
 
 DEBRIS = {
@@ -31,7 +34,7 @@ OWN = DEBRIS | {
     "argument_of_periapsis_deg": 90.0,
 }
 HALF = np.array([240.0, 180.0])
-CLOCK = Clock(60.0, 1.0)
+CLOCK = Clock.regular(60.0, 1.0)
 
 
 def draws(runs: int, seed: int = 1) -> Draws:
@@ -148,7 +151,7 @@ def test_without_an_error_the_attitude_is_known(scene) -> None:
 
 def test_the_guess_is_drawn_about_the_truth(scene) -> None:
     data = scene(800)
-    part = OrbitGuess(kind="orbit_guess", position_sigma_m=100.0, velocity_sigma_m_s=20.0)
+    part = DrawnOrbit(kind="drawn_orbit", position_sigma_m=100.0, velocity_sigma_m_s=20.0)
     found = part.simulate(data, CLOCK, draws(800))
     for name, sigma in (("position", 100.0), ("velocity", 20.0)):
         error = found[f"start_orbit_{name}"] - data[f"orbit_{name}"][:, 0]

@@ -19,7 +19,8 @@ class FadingPoints(SimulationPart):
     """Coordinates of features in inertial axes, NaN where one is not seen."""
 
     needs = ("true_point_b", "true_q_ib", "true_position")
-    gives = ("measured_point", "point_noise", "fading")
+    knows = ("point_noise",)
+    measures = ("measured_point", "fading")
     kind: Literal["fading_points"]
     noise_m: Positive
     seen: Annotated[float, Field(gt=0, le=1)] = 0.9

@@ -50,7 +50,7 @@ BROKEN = {
     ),
     "quantity": (PART + "\nQUANTITIES = {'rate_b': 1}\n", ": ", ["rate_b exists already"]),
     "undeclared": (
-        PART.replace("    kind: L", '    gives = ("glare",)\n    kind: L'),
+        PART.replace("    kind: L", '    measures = ("glare",)\n    kind: L'),
         ":4: ", ["Mine: QUANTITIES must declare glare"],
     ),
     "no_quantity": (PART + "\nQUANTITIES = {'glare': 1}\n", ": ", ["glare must be", "Quantity"]),

@@ -6,6 +6,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
+from debrisest.clock import Clock
 from debrisest.filters.replay.replay import replay
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
@@ -28,7 +29,9 @@ class Experiment:
         start[:, 9:15] = [0, 0, 0, 1, -0.186, -0.0797]
         start[:, 15:] = rng.uniform(-1.5, 1.5, (runs, 3 * POINTS))
         shown = shown or stereo_pose.Shown(acceleration=slow)
-        self.known = stereo_pose.stereo_geometry(epochs, 1.0, *ORBIT, points=POINTS, shown=shown)
+        self.known = stereo_pose.stereo_geometry(
+            Clock.regular(epochs, 1.0), *ORBIT, points=POINTS, shown=shown
+        )
         self.truth = simulate_truth(np.arange(float(epochs)), start, *ORBIT)
         variance = np.repeat([1.0, np.radians(1) ** 2, 1e-5, 0.5, 1.0], [6, 3, 4, 2, 3 * POINTS])
         self.prior = draw_guess(start, variance, rng.normal(size=start.shape))

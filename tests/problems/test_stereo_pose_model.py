@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from debrisest.clock import Clock
 from debrisest.filters.kalman.unscented import unscented
-from debrisest.problems.stereo_pose import additive
+from debrisest.problems.stereo_pose import additive, chart
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.truth import draw_guess, simulate_truth
 
@@ -28,9 +29,13 @@ def any_states(seed=1):
     return state + 1e-2 * rng.normal(size=state.shape)
 
 
-def test_process_follows_the_exact_motion():
-    known = stereo_pose.stereo_geometry(101, 1.0, *ORBIT, points=4)
-    truth = simulate_truth(np.arange(101.0), starts(), *ORBIT)
+UNEVEN = np.cumsum(np.random.default_rng(5).uniform(0.4, 1.2, 101)) - 0.4
+
+
+@pytest.mark.parametrize("times", [np.arange(101.0), UNEVEN])
+def test_process_follows_the_exact_motion(times):
+    known = stereo_pose.stereo_geometry(Clock(times), *ORBIT, points=4)
+    truth = simulate_truth(times, starts(), *ORBIT)
     state = truth[:, 0]
     for k in range(100):
         state = stereo_pose.process(known, state, k)
@@ -41,10 +46,19 @@ def test_process_follows_the_exact_motion():
     np.testing.assert_array_equal(state[:, 13:], truth[:, -1, 13:])
 
 
+def test_replays_at_uneven_times_follow_the_exact_motion_both_ways():
+    known = stereo_pose.stereo_geometry(Clock(UNEVEN), *ORBIT, points=4)
+    truth = simulate_truth(UNEVEN, starts(), *ORBIT)
+    for first, last in ((0, 40), (40, 0)):
+        states, _ = chart.propagate(known, truth[:, first], first, last)
+        np.testing.assert_allclose(states[:, -1], truth[:, last], atol=1e-7)
+    np.testing.assert_allclose(chart.rewind(known, truth[:, 40], 40), truth[:, 0], atol=1e-7)
+
+
 @pytest.mark.parametrize(("rate", "size"), [((-0.1, -0.1, 0.034), 0.1), ((-1, -1, 0.934), 1.0)])
 def test_initial_rates_of_the_target_are_round(rate, size):
     state = starts(rate=rate)
-    known = stereo_pose.stereo_geometry(1, 1.0, *ORBIT, points=4)
+    known = stereo_pose.stereo_geometry(Clock.regular(1, 1.0), *ORBIT, points=4)
     total = state[0, 6:9] + [0.0, 0.0, known.leader.rate[0]]
     rate_t = Rotation.from_quat(state[0, 9:13], scalar_first=True).inv().apply(total)
     np.testing.assert_allclose(np.degrees(rate_t), size, atol=1e-4)
@@ -52,10 +66,10 @@ def test_initial_rates_of_the_target_are_round(rate, size):
 
 def test_measurements_of_the_exact_motion():
     """Pixels by hand; flow and angular acceleration by differences of the motion itself."""
-    known = stereo_pose.stereo_geometry(1, 1.0, *ORBIT, points=4, shown=SHOWN)
+    known = stereo_pose.stereo_geometry(Clock.regular(1, 1.0), *ORBIT, points=4, shown=SHOWN)
     step = 0.01
     truth = simulate_truth(np.array([0.0, step, 2 * step]), starts(), *ORBIT)
-    middle = stereo_pose.stereo_geometry(1, 1.0, *ORBIT, points=4)
+    middle = stereo_pose.stereo_geometry(Clock.regular(1, 1.0), *ORBIT, points=4)
     pixels = []
     for k in range(3):
         turn = Rotation.from_quat(truth[:, k, 9:13], scalar_first=True).as_matrix()
@@ -79,7 +93,9 @@ def test_measurements_of_the_exact_motion():
 
 @pytest.mark.parametrize("raw", [False, True])
 def test_jacobians_match_differences(raw):
-    known = stereo_pose.stereo_geometry(3, 1.0, *ORBIT, points=4, shown=SHOWN, raw_rotation=raw)
+    known = stereo_pose.stereo_geometry(
+        Clock.regular(3, 1.0), *ORBIT, points=4, shown=SHOWN, raw_rotation=raw
+    )
     state = any_states()
     for function, jacobian in (
         (stereo_pose.process, additive.process_jacobian),
@@ -98,7 +114,7 @@ def test_printed_transition_is_right_to_first_order():
     state = any_states()
     gaps = []
     for step in (0.02, 0.01):
-        known = stereo_pose.stereo_geometry(3, step, *ORBIT, points=4)
+        known = stereo_pose.stereo_geometry(Clock.regular(3, step), *ORBIT, points=4)
         printed = additive.first_order_transition(known, state, 0)
         gaps.append(np.abs(printed - additive.process_jacobian(known, state, 0)).max())
     assert 3.5 < gaps[0] / gaps[1] < 4.5
@@ -109,7 +125,9 @@ def test_only_the_raw_rotation_uses_the_norm_of_the_quaternion():
     scaled = state.copy()
     scaled[:, 9:13] *= 1.001
     for raw in (False, True):
-        known = stereo_pose.stereo_geometry(3, 1.0, *ORBIT, points=4, shown=SHOWN, raw_rotation=raw)
+        known = stereo_pose.stereo_geometry(
+            Clock.regular(3, 1.0), *ORBIT, points=4, shown=SHOWN, raw_rotation=raw
+        )
         shown = [stereo_pose.measurement(known, s, 0) for s in (state, scaled)]
         after = [stereo_pose.process(known, s, 0) for s in (state, scaled)]
         assert np.allclose(*shown, rtol=0, atol=1e-13) is not raw
@@ -118,7 +136,7 @@ def test_only_the_raw_rotation_uses_the_norm_of_the_quaternion():
 
 def test_groups_can_be_switched_off():
     state = starts()
-    everything = stereo_pose.stereo_geometry(1, 1.0, *ORBIT, points=4, shown=SHOWN)
+    everything = stereo_pose.stereo_geometry(Clock.regular(1, 1.0), *ORBIT, points=4, shown=SHOWN)
     rows = stereo_pose.measurement(everything, state, 0)[:, :36].reshape(3, 4, 9)
     for shown, part in (
         (stereo_pose.Shown(True, False, False), rows[..., :4]),
@@ -147,7 +165,7 @@ def test_guesses_scatter_as_the_variance_says():
 
 def test_a_filter_can_be_handed_the_model():
     """From a good start, with the centre of mass known: nothing but the interface is tested."""
-    known = stereo_pose.stereo_geometry(6, 1.0, *ORBIT, points=4)
+    known = stereo_pose.stereo_geometry(Clock.regular(6, 1.0), *ORBIT, points=4)
     truth = simulate_truth(np.arange(6.0), starts(), *ORBIT)
     shown = np.stack([stereo_pose.measurement(known, truth[:, k], k) for k in range(6)], axis=1)
     n = truth.shape[-1]

@@ -13,7 +13,7 @@ from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditiv
 from debrisest.problems.stereo_pose.score import plain_covariance, scores
 
 POINTS, EPOCHS = 5, 4
-CLOCK = Clock(float(EPOCHS), 1.0)
+CLOCK = Clock.regular(float(EPOCHS), 1.0)
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +84,7 @@ def test_what_no_sensor_measures_is_told(data):
 
 def test_the_covariance_of_both_charts_is_the_same(data):
     guess = {name: data[f"start_{name}"] for name in of_data.NAMES}
-    variance = {name: 0.01 * (i + 1) for i, name in enumerate(of_data.NAMES)}
+    variance = {name: np.full(v.shape, 0.01 * (i + 1)) for i, (name, v) in enumerate(guess.items())}
     state, additive = StereoPoseAdditive(kind="stereo_pose_additive").pack(guess, variance)
     _, plain = StereoPose(kind="stereo_pose").pack(guess, variance)
     assert plain.shape == (2, 29, 29)

@@ -302,7 +302,7 @@ def test_without_truth_there_are_no_errors() -> None:
 
 
 def test_the_covariances_that_nees_needs_are_kept() -> None:
-    clock, state = Clock(10.0, 0.5), state_of(*BODIES["slender"])[None]
+    clock, state = Clock.regular(10.0, 0.5), state_of(*BODIES["slender"])[None]
     noise = problem.Variances(q_ib=1e-6, q_bf=1e-6, rate_rad2_s2=1e-6, moments=1e-6)
     model = problem.TumblingAttitude(
         kind="tumbling_attitude", integrator="rk4", process_noise=noise, measurement_noise=1e-2

@@ -95,7 +95,22 @@ def test_sensitivities_against_differences_of_integrated_motions(integrated, nud
 def model():
     """Three runs, each of which sees other points."""
     seen = np.random.default_rng(3).random((3, len(TIMES), len(POINTS))) < 0.6
-    return replay_model(np.tile(POINTS, (3, 1, 1)), seen, 0.05, 1.0), seen
+    times = np.arange(float(len(TIMES)))
+    return replay_model(np.tile(POINTS, (3, 1, 1)), seen, 0.05, times), seen
+
+
+def test_replays_take_each_epochs_own_time(integrated):
+    times = np.cumsum(np.random.default_rng(6).uniform(0.4, 1.6, len(TIMES)))
+    seen = np.ones((2, len(TIMES), len(POINTS)), dtype=bool)
+    known = replay_model(np.tile(POINTS, (2, 1, 1)), seen, 0.05, times)
+    path, _ = known.trajectory(states(2, 4), 5, 40)
+    _, rates = integrated(states(2, 4), times[5:41] - times[5])
+    np.testing.assert_allclose(path[..., body.RATE], rates, rtol=0, atol=1e-9)
+    back = known.trajectory(path[:, -1], 40, 5)[0]
+    np.testing.assert_allclose(back[:, ::-1], path, atol=1e-9)
+    np.testing.assert_allclose(
+        known.rewind(path[:, -1], 40), body.moved(path[:, 0], times[0] - times[5]), atol=1e-9
+    )
 
 
 def test_rows_are_contrasts_of_the_turned_points_of_each_run(model, integrated):

@@ -19,7 +19,7 @@ class _Validating(FilterPart):
     """Keys of the filters that have to tell the target from clutter."""
 
     version = 2
-    needs = ("scan_model",)
+    takes = "scan_model"
     gate: Positive = 9.21
     detection_probability: Probability = 0.99
     gate_probability: Probability | None = None
@@ -41,6 +41,11 @@ class AssociationFilter(_Validating):
     method: Literal["probabilistic", "nearest"] = "probabilistic"
     linearised: Literal["estimate", "start", "truth"] = "estimate"
     relinearised_s: Positive | None = None
+
+    @property
+    def uses_truth(self) -> bool:
+        """Return whether it is linearised at the truth."""
+        return self.linearised == "truth"
 
     @model_validator(mode="after")
     def _relinearised_from_the_start(self) -> Self:
@@ -69,6 +74,7 @@ class AssociationFilter(_Validating):
 class JointAssociation(_Validating):
     """A target among other pieces that are tracked as well, each detection that of one at most."""
 
+    takes = "tracks_model"
     kind: Literal["joint_association"]
 
     def run(self, model: ScanModel, given: Given) -> Estimates:
@@ -84,7 +90,7 @@ class JointAssociation(_Validating):
 class KnownAssociation(FilterPart):
     """The extended Kalman filter that is handed the target's own detections."""
 
-    needs = ("scan_model",)
+    takes = "scan_model"
     kind: Literal["known_association"]
     keep_s: KeptTimes = []
 

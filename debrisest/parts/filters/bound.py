@@ -21,7 +21,8 @@ from debrisest.roles import FilterPart, Given
 class Efficient(FilterPart):
     """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
 
-    needs = ("replay_model",)
+    takes = "replay_model"
+    needs_truth = True
     kind: Literal["efficient"]
     smoother: bool = False
     keep_s: KeptTimes = []
@@ -43,7 +44,8 @@ class Efficient(FilterPart):
 class LandmarkBound(FilterPart):
     """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
 
-    needs = ("landmark_model",)
+    takes = "landmark_model"
+    needs_truth = True
     kind: Literal["landmark_bound"]
     keep_s: KeptTimes = []
 
@@ -72,7 +74,8 @@ class LinearisedAtTruth(FilterPart):
     Known detections, linearised at the truth.
     """
 
-    needs = ("scan_model",)
+    takes = "scan_model"
+    needs_truth = True
     kind: Literal["linearised_at_truth"]
     keep_s: KeptTimes = []
 

@@ -20,14 +20,13 @@ KeptTimes = Annotated[
 
 def kept_epochs(times: list[float], clock: Clock) -> list[int]:
     """Return the epochs nearest to the times, without those after the end."""
-    last = len(clock.times) - 1
-    return sorted({epoch for time in times if (epoch := round(time / clock.step)) <= last})
+    return sorted({clock.nearest(time) for time in times if clock.reaches(time)})
 
 
 class Unscented(FilterPart):
     """The unscented Kalman filter; the paper's form does not redraw its sigma points."""
 
-    needs = ("model",)
+    takes = "model"
     kind: Literal["unscented"]
     alpha: Positive = 1.0
     beta: float = 2.0
@@ -52,7 +51,7 @@ class Unscented(FilterPart):
 class Extended(FilterPart):
     """The extended Kalman filter, or with more than one iteration the iterated one."""
 
-    needs = ("model",)
+    takes = "model"
     kind: Literal["extended"]
     iterations: Annotated[int, Field(ge=1)] = 1
     tolerance: Positive = 1e-2

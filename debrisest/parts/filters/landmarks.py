@@ -34,7 +34,7 @@ _SUSPECT = (
 
 class _LandmarkFilter(FilterPart):
     version = 2
-    needs = ("landmark_model",)
+    takes = "landmark_model"
     iterations: Annotated[int, Field(ge=1)] = 3
     gate: bool = True
     keep_s: KeptTimes = []

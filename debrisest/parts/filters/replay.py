@@ -16,7 +16,7 @@ class Replay(FilterPart):
     """Maximum a posteriori at every epoch of all measurements so far, or of all there are."""
 
     version = 2
-    needs = ("replay_model",)
+    takes = "replay_model"
     kind: Literal["replay"]
     smoother: bool = False
     gate: bool = False

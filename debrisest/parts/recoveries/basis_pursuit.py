@@ -21,6 +21,8 @@ from debrisest.roles import Keys, NonNegative, Positive, RecoveryPart
 
 _ATTITUDES: dict[str, Callable[[Array, Array], Array]] = {"triad": triad, "wahba": wahba}
 Count = Annotated[int, Field(ge=1)]
+MOST_JITTER = 0.01
+"""Part of a step by which an epoch may be off: a turn as small beside what a step turns."""
 
 
 class SignSearch(Keys):
@@ -47,7 +49,10 @@ class SignSearch(Keys):
 
 
 class BasisPursuit(RecoveryPart):
-    """Attitude of each epoch from its points, signs by search, the rest by basis pursuit."""
+    """Attitude of each epoch from its points, signs by search, the rest by basis pursuit.
+
+    The transform takes epochs for equidistant, so that they must be, but for a small jitter.
+    """
 
     needs = ("measured_point", "known_point_f")
     gives = ("q_if",)
@@ -65,6 +70,7 @@ class BasisPursuit(RecoveryPart):
 
     def recover(self, data: Data, clock: Clock) -> Data:
         """Return raw and recovered attitude (run, time, 4) with the solver's words on it."""
+        _require_even(clock)
         matrix = _ATTITUDES[self.attitude](data["known_point_f"][0], data["measured_point"])
         raw = quaternion.from_matrix(matrix)
         piece = pieces(np.isfinite(raw[..., 0]))
@@ -127,6 +133,15 @@ class BasisPursuit(RecoveryPart):
             self.iterations,
             relaxation=self.relaxation,
             tolerance=self.tolerance,
+        )
+
+
+def _require_even(clock: Clock) -> None:
+    if clock.jitter > MOST_JITTER:
+        raise ValueError(
+            f"the epochs are up to {clock.jitter:.2g} steps away from an even grid, and at most "
+            f"{MOST_JITTER:g} is allowed; resample the points, or estimate from the points "
+            "themselves, at their own times (problem tumbling_points)"
         )
 
 

@@ -37,11 +37,9 @@ class CameraRange(SimulationPart):
         *("chaser_position_h", "orbit_position", "orbit_velocity"),
         *("true_q_ib", "true_point_b"),
     )
-    gives = (
-        *("image_point", "measured_range", "landmark", "landmark_range"),
-        *("true_q_hc", "known_q_hc"),
-        *("focal_px", "image_noise_px", "range_noise", "attitude_noise"),
-    )
+    truths = ("true_q_hc",)
+    knows = ("known_q_hc", "focal_px", "image_noise_px", "range_noise", "attitude_noise")
+    measures = ("image_point", "measured_range", "landmark", "landmark_range")
     tried = True
     version = 2
     kind: Literal["camera_range"]

@@ -8,9 +8,8 @@ from pydantic import Field, field_validator
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
-from debrisest.draws import Draws, Stream
+from debrisest.draws import Draws, Stream, drawn_about
 from debrisest.dynamics import kepler, perturbed_orbit
-from debrisest.parts.sensors.tracking import drawn_about
 from debrisest.roles import Keys, NonNegative, Positive, SimulationPart
 from debrisest.sensors import pinhole
 from debrisest.sensors.detections import around, in_image, unlabelled
@@ -58,7 +57,9 @@ class Detections(SimulationPart):
         *("orbit_position", "orbit_velocity", "observer_position", "true_q_ic"),
         *("true_pixel", "camera_scale", "image_half_size"),
     )
-    gives = ("detected_pixel", "target_detection")
+    truths = ("target_detection",)
+    knows = ("start_companion_position", "start_companion_velocity")
+    measures = ("detected_pixel",)
     tried = True
     kind: Literal["detections"]
     noise_px: NonNegative = 1.0
@@ -66,6 +67,11 @@ class Detections(SimulationPart):
     detection_probability: Annotated[float, Field(gt=0, le=1)] = 1.0
     clutter: Clutter | None = None
     companions: Companions | None = None
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Return the datasets that this sensor gives: guesses only of companions that there are."""
+        return super().given if self.companions else (*self.truths, *self.measures)
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the points (run, time, observer, detection, 2) and which is the debris' own."""

@@ -17,7 +17,8 @@ class FeaturePoints(SimulationPart):
 
     version = 2
     needs = ("true_point_b", "true_normal_b", "true_q_ib", "true_position")
-    gives = ("measured_point", "point_noise")
+    knows = ("point_noise",)
+    measures = ("measured_point",)
     kind: Literal["feature_points"]
     noise_m: NonNegative
     visibility: Literal["back_face", "all"] = "back_face"

@@ -7,11 +7,11 @@ import numpy as np
 from debrisest.arrays import BoolArray, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
-from debrisest.roles import StartPart
+from debrisest.parts.starts.guess import FromGuess
 
 
-class FirstImage(StartPart):
-    """The drawn guess, but for the position: behind the middle of the first image's points.
+class FirstImage(FromGuess):
+    """The first guess, but for the position: behind the middle of the first image's points.
 
     The direction is that of their median pixel, the distance the measured range. This needs the
     camera's attitude, and is much better than a drawn direction.
@@ -20,8 +20,8 @@ class FirstImage(StartPart):
     needs = ("start_relative_position_h", "image_point", "measured_range", "known_q_hc", "focal_px")
     kind: Literal["first_image"]
 
-    def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:
-        """Return the initial guess by name, each with its ``_sigma``; no further variances."""
+    def start(self, data: Data, clock: Clock) -> tuple[Data, Data]:
+        """Return the initial guess by name, and its variance by name."""
         pixels = data["image_point"][:, 0]
         seen: BoolArray = np.asarray(np.isfinite(pixels).all(-1).any(-1))
         middle = np.nanmedian(np.where(seen[:, None, None], pixels, 0.0), axis=1)
@@ -29,8 +29,6 @@ class FirstImage(StartPart):
         view = np.concatenate([slope, np.ones_like(slope[:, :1])], axis=-1)
         view *= (data["measured_range"][:, 0] / np.linalg.norm(view, axis=-1))[:, None]
         position = -quaternion.rotate(data["known_q_hc"][:, 0], view)
-        names = [name for name in data if name.startswith("start_")]
-        guess: Data = {name.removeprefix("start_"): data[name] for name in names}
-        drawn = guess["relative_position_h"]
-        guess["relative_position_h"] = np.where(seen[:, None], position, drawn)
-        return guess, {}
+        guess, variance = super().start(data, clock)
+        known = guess["relative_position_h"]
+        return guess | {"relative_position_h": np.where(seen[:, None], position, known)}, variance

@@ -17,7 +17,7 @@ class RandomBox(SimulationPart):
     The surface at a point is parallel to the face of the box that it is nearest to.
     """
 
-    gives = ("true_point_b", "true_normal_b", "true_inertia_b")
+    truths = ("true_point_b", "true_normal_b", "true_inertia_b")
     kind: Literal["random_box"]
     count: Annotated[int, Field(ge=3)]
     half_side_m: Limits[Positive] = Field(description="lower and upper limit")

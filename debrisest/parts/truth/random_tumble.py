@@ -18,7 +18,7 @@ class RandomTumble(SimulationPart):
     """Attitude and axis drawn evenly, rate between two limits, under the gravity gradient."""
 
     needs = ("true_inertia_b", "orbit_position", "orbit_velocity")
-    gives = ("true_q_ib", "true_rate_b")
+    truths = ("true_q_ib", "true_rate_b")
     kind: Literal["random_tumble"]
     rate_deg_s: Limits[NonNegative] = Field(description="lower and upper limit, at time zero")
 

@@ -34,13 +34,14 @@ from debrisest.problems.camera_range.model import (
     RangeModel,
 )
 from debrisest.problems.camera_range.projection import landmark_model
-from debrisest.problems.camera_range.score import scores
+from debrisest.problems.camera_range.score import TRUE_STATE, scores
 from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 from debrisest.target.start_frame import in_start_frame
 
 _SCORED = np.r_[RATE_ERROR, POSITION_ERROR, VELOCITY_ERROR, LOG_INERTIA_ERROR]
 _COUNTED = ("restarts", "dropped", "fit")
 """What filters count over whole runs, for the tables."""
+_RANGE = ("measured_range",)
 _PLACES = {
     "rate_b": (RATE, RATE_ERROR),
     "relative_position_h": (POSITION, POSITION_ERROR),
@@ -57,11 +58,13 @@ class CameraRangeMinimal(ProblemPart):
     to one of the points.
     """
 
-    gives: ClassVar[tuple[str, ...]] = ("landmark_model",)
+    model_kind = "landmark_model"
     needs: ClassVar[tuple[str, ...]] = (
-        *("image_point", "measured_range", "landmark_range", "known_q_hc", "focal_px"),
-        *("orbit_position", "orbit_velocity", "start_relative_position_h"),
+        *("image_point", "known_q_hc", "focal_px", "image_noise_px", "range_noise"),
+        *("attitude_noise", "orbit_position", "orbit_velocity"),
     )
+    start_needs = ("rate_b", "relative_position_h", "relative_velocity_h", "point_b")
+    true_state = TRUE_STATE
     version = 2
     kind: Literal["camera_range_minimal"]
     camera_attitude: CameraAttitude = "known"
@@ -85,6 +88,12 @@ class CameraRangeMinimal(ProblemPart):
                 "there is none"
             )
         return self
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """Return the datasets that are needed: those of the range that is used."""
+        ranges = ("landmark", "landmark_range") if self.range_to == "landmark" else _RANGE
+        return (*self.needs, *ranges)
 
     def measurements(self, data: Data) -> Array:
         """Return pixels point by point, then the range; or a range beside each point's pixels."""
@@ -122,7 +131,7 @@ class CameraRangeMinimal(ProblemPart):
             )
         )
 
-    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+    def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the start (run, n) and its covariance (run, n_e, n_e).
 
         The attitude is left to the model, which takes it from the camera's, and the points to the
@@ -131,17 +140,17 @@ class CameraRangeMinimal(ProblemPart):
         runs, points = guess["point_b"].shape[:2]
         extras, extra_sigma = self._extras()
         state = np.zeros((runs, CORE + len(extras) + 3 * points))
-        sigma = np.zeros((runs, CORE_ERRORS + len(extras) + 3 * points))
+        diagonal = np.zeros((runs, CORE_ERRORS + len(extras) + 3 * points))
         state[:, 0] = 1.0
         for name in ("rate_b", "relative_position_h", "relative_velocity_h"):
             where, error = _PLACES[name]
-            state[:, where], sigma[:, error] = guess[name], guess[f"{name}_sigma"]
+            state[:, where], diagonal[:, error] = guess[name], variance[name]
         state[:, CORE : CORE + len(extras)] = extras
-        sigma[:, :3] = np.radians(self.gauge_sigma_deg)
-        sigma[:, LOG_INERTIA_ERROR] = self.log_inertia_sigma
-        sigma[:, CORE_ERRORS : CORE_ERRORS + len(extras)] = extra_sigma
-        sigma[:, CORE_ERRORS + len(extras) :] = self.point_sigma_m
-        return state, sigma[..., None] ** 2 * np.eye(sigma.shape[-1])
+        diagonal[:, :3] = np.radians(self.gauge_sigma_deg) ** 2
+        diagonal[:, LOG_INERTIA_ERROR] = self.log_inertia_sigma**2
+        diagonal[:, CORE_ERRORS : CORE_ERRORS + len(extras)] = np.square(extra_sigma)
+        diagonal[:, CORE_ERRORS + len(extras) :] = self.point_sigma_m**2
+        return state, diagonal[..., None] * np.eye(diagonal.shape[-1])
 
     def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma; landmarks may be absent."""
@@ -164,14 +173,11 @@ class CameraRangeMinimal(ProblemPart):
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors against the truth, as they are and gauge-free, and consistency."""
         counted = {name: data[name] for name in _COUNTED if name in data}
-        q_hc = self._start_camera(data) if "true_q_hc" in data else np.empty(0)
-        return counted | scores(data, q_hc, _SCORED, self.log_inertia_sigma)
+        return counted | scores(data, self._camera, _SCORED, self.log_inertia_sigma)
 
     def truth(self, data: Data) -> Array | None:
-        """Return the true states (run, time, n), where they are known."""
-        if "true_q_ib" not in data:
-            return None
-        truth = in_start_frame(data, self._start_camera(data))
+        """Return the true states (run, time, n)."""
+        truth = in_start_frame(data, data[self._camera][:, 0])
         epochs = truth.rate.shape[:2]
         constant = [log_inertia.log_ratios(truth.inertia), *self._true_extras(data)]
         constant.append(truth.point.reshape(epochs[0], -1))
@@ -183,9 +189,10 @@ class CameraRangeMinimal(ProblemPart):
             axis=-1,
         )
 
-    def _start_camera(self, data: Data) -> Array:
-        """Attitude (run, 4) of the camera at time zero that defines the body axes."""
-        return data["known_q_hc" if self.camera_attitude == "known" else "true_q_hc"][:, 0]
+    @property
+    def _camera(self) -> str:
+        """The attitude of the camera that defines the body axes at time zero."""
+        return "known_q_hc" if self.camera_attitude == "known" else "true_q_hc"
 
     def _ranged(self, data: Data) -> Array:
         """1 for the point (run, time, N) that the range is held on; any where there is none."""

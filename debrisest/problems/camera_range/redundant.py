@@ -27,16 +27,21 @@ from debrisest.roles import ProblemPart, Window
 
 _ROWS = np.array([*range(4, 13)])
 """Rate, position and velocity in the covariance."""
+_NAMES = (
+    *("q_cb", "rate_b", "relative_position_h", "relative_velocity_h", "inertia_b"),
+    *("point_b", "point_c"),
+)
 
 
 class CameraRangeRedundant(ProblemPart):
     """6N + 19 components, additive errors; the camera's attitude follows from the position."""
 
-    gives: ClassVar[tuple[str, ...]] = ("model",)
+    model_kind = "model"
     needs: ClassVar[tuple[str, ...]] = (
         *("image_point", "measured_range", "orbit_position", "orbit_velocity"),
-        *("start_relative_position_h", "start_point_c"),
+        *("focal_px", "image_noise_px", "range_noise"),
     )
+    start_needs = _NAMES
     kind: Literal["camera_range_redundant"]
 
     def measurements(self, data: Data) -> Array:
@@ -57,10 +62,10 @@ class CameraRangeRedundant(ProblemPart):
             known, float(data["image_noise_px"][0]), float(data["range_noise"][0])
         )
 
-    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+    def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, n) and its diagonal covariance (run, n, n)."""
-        sigma = _state({name: guess[f"{name}_sigma"] for name in _NAMES})
-        return _state(guess), sigma[..., None] ** 2 * np.eye(sigma.shape[-1])
+        diagonal = _state(variance)
+        return _state(guess), diagonal[..., None] * np.eye(diagonal.shape[-1])
 
     def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
@@ -69,13 +74,7 @@ class CameraRangeRedundant(ProblemPart):
 
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors against the truth, as they are and gauge-free, and consistency."""
-        return scores(data, data["true_q_hc"][:, 0], _ROWS)
-
-
-_NAMES = (
-    *("q_cb", "rate_b", "relative_position_h", "relative_velocity_h", "inertia_b"),
-    *("point_b", "point_c"),
-)
+        return scores(data, "true_q_hc", _ROWS)
 
 
 def _state(parts: Data) -> Array:

@@ -15,20 +15,25 @@ from debrisest.attitude import quaternion
 from debrisest.dynamics import log_inertia
 from debrisest.target.start_frame import InStartFrame, in_start_frame
 
+TRUE_STATE = (
+    *("true_q_ib", "true_rate_b", "true_point_b", "true_inertia_b", "true_q_hc"),
+    *("chaser_position_h", "chaser_velocity_h"),
+)
+"""The datasets of the truth."""
 SEEN = 0.05
 """Features seen in a smaller part of the time are not scored."""
 
 
-def scores(data: Data, q_hc: Array, rows: IntArray, log_inertia_sigma: float | None = None) -> Data:
+def scores(data: Data, camera: str, rows: IntArray, log_inertia_sigma: float | None = None) -> Data:
     """Return the errors, as far as there is a truth, and the consistency.
 
-    ``q_hc (run, 4)`` is the camera's attitude at time zero which the body axes were taken from;
+    ``camera`` names the camera's attitude (run, time, 4), whose first the body axes are taken from;
     ``rows`` tells where in the covariance w, rho, v and, if there are log-ratios, s lie;
     ``log_inertia_sigma`` is what was known of these before.
     """
-    if "true_q_ib" not in data:
+    if not all(name in data for name in TRUE_STATE):
         return {}
-    truth = in_start_frame(data, q_hc)
+    truth = in_start_frame(data, data[camera][:, 0])
     with np.errstate(invalid="ignore"):
         result = _components(data, truth) | _norms(data, truth) | _aligned(data, truth)
         result |= _remaining(data, truth, result) | _consistency(data, result, rows)
@@ -108,8 +113,9 @@ def _remaining(data: Data, truth: InStartFrame, errors: Data) -> Data:
         "velocity": _norm(data["start_relative_velocity_h"] - data["chaser_velocity_h"][:, 0]),
         "rate": _norm(data["start_rate_b"] - truth.rate[:, 0]),
         "points": rms_distance(data["start_point_b"], truth.point),
-        "inertia_tensor": _spectral(data["start_inertia_b"] - truth.inertia),
     }
+    if "inertia_tensor" in errors:
+        guess["inertia_tensor"] = _spectral(data["start_inertia_b"] - truth.inertia)
     names = {name: name for name in guess if name in errors}
     names |= {"aligned_rate": "rate", "aligned_points": "points"}
     return {

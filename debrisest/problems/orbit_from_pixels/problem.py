@@ -19,11 +19,10 @@ from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 class OrbitFromPixels(ProblemPart):
     """The problem of this file, its noises and what of the data it uses."""
 
-    needs = (
-        *("observer_position", "known_q_ic", "camera_scale", "section", "detected_pixel"),
-        *("start_orbit_position", "start_orbit_velocity"),
-    )
-    gives = ("scan_model",)
+    needs = ("observer_position", "known_q_ic", "camera_scale", "section", "detected_pixel")
+    model_kind = "scan_model"
+    start_needs = ("orbit_position", "orbit_velocity")
+    true_state = ("orbit_position", "orbit_velocity")
     kind: Literal["orbit_from_pixels"]
     acceleration_noise_m_s2: NonNegative = Field(description="1 sigma per axis, over each step")
     pixel_variance_px2: Positive = Field(1.0, description="of each coordinate")
@@ -37,6 +36,26 @@ class OrbitFromPixels(ProblemPart):
         if self.tracks == "all" and self.attitude_bias:
             raise ValueError("attitude_bias: true is not possible with tracks: all")
         return self
+
+    @property
+    def gives_model(self) -> str:
+        """Return the kind of model: that of one track, or of several."""
+        return "tracks_model" if self.tracks == "all" else self.model_kind
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """Return the datasets that are needed, of labelled detections the true labels too."""
+        return (*self.needs, "target_detection") if self.detections == "own" else self.needs
+
+    @property
+    def start_needed(self) -> tuple[str, ...]:
+        """Return the first guesses that are needed, that of the attitude's error if estimated."""
+        return (*self.start_needs, "attitude_bias") if self.attitude_bias else self.start_needs
+
+    @property
+    def truth_needed(self) -> tuple[str, ...]:
+        """Return the datasets that the truth is made of."""
+        return (*self.true_state, "true_q_ic") if self.attitude_bias else self.true_state
 
     def measurements(self, data: Data) -> Array:
         """Return the points (run, time, observer, detection, 2)."""
@@ -63,16 +82,16 @@ class OrbitFromPixels(ProblemPart):
             )
         )
 
-    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+    def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return state (run, n) and covariance (run, n, n); with tracks (run, track, ...)."""
         state = np.concatenate([guess["orbit_position"], guess["orbit_velocity"]], axis=-1)
-        covariance = _orbit_covariance(variance, "orbit", len(state))
+        covariance = _covariance(variance, "orbit")
         if self.tracks == "all":
             return _with_companions(state, covariance, guess, variance)
         if not self.attitude_bias:
             return state, covariance
-        bias = guess["attitude_bias"].reshape(len(state), -1)
-        return _with_bias(state, covariance, bias, variance["attitude_bias"])
+        biases = guess["attitude_bias"], variance["attitude_bias"]
+        return _with_bias(state, covariance, *(each.reshape(len(state), -1) for each in biases))
 
     def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
@@ -90,9 +109,7 @@ class OrbitFromPixels(ProblemPart):
         return scores(data)
 
     def truth(self, data: Data) -> Array | None:
-        """Return the true states (run, time, n), where they are known."""
-        if "orbit_position" not in data:
-            return None
+        """Return the true states (run, time, n)."""
         parts = [data["orbit_position"], data["orbit_velocity"]]
         if self.attitude_bias:
             bias = true_bias(data)
@@ -104,22 +121,24 @@ def _time_first(values: Array) -> Array:
     return np.ascontiguousarray(np.moveaxis(values, 1, 0))
 
 
-def _orbit_covariance(variance: dict[str, float], name: str, runs: int) -> Array:
-    diagonal = np.repeat([variance[f"{name}_position"], variance[f"{name}_velocity"]], 3)
-    return np.tile(np.diag(diagonal), (runs, 1, 1))
+def _covariance(variance: Data, name: str) -> Array:
+    """Covariance (run, ..., 6, 6) of the first guess of a position and a velocity."""
+    diagonal = np.concatenate([variance[f"{name}_position"], variance[f"{name}_velocity"]], axis=-1)
+    return np.asarray(diagonal[..., None] * np.eye(6))
 
 
 def _with_bias(
-    state: Array, covariance: Array, bias: Array, variance: float
+    state: Array, covariance: Array, bias: Array, variance: Array
 ) -> tuple[Array, Array]:
     n = state.shape[-1] + bias.shape[-1]
-    whole = np.tile(variance * np.eye(n), (len(state), 1, 1))
+    whole = np.zeros((len(state), n, n))
     whole[:, ORBIT, ORBIT] = covariance
+    whole[:, ORBIT.stop :, ORBIT.stop :] = variance[..., None] * np.eye(bias.shape[-1])
     return np.concatenate([state, bias], axis=-1), whole
 
 
 def _with_companions(
-    state: Array, covariance: Array, guess: Data, variance: dict[str, float]
+    state: Array, covariance: Array, guess: Data, variance: Data
 ) -> tuple[Array, Array]:
     """The debris is track 0, companions follow, if there are any."""
     tracks, spread = state[:, None], covariance[:, None]
@@ -127,9 +146,7 @@ def _with_companions(
         return tracks, spread
     pieces = [guess["companion_position"], guess["companion_velocity"]]
     others = np.concatenate(pieces, axis=-1)
-    other = _orbit_covariance(variance, "companion", len(state))[:, None]
-    count = others.shape[1]
     return (
         np.concatenate([tracks, others], axis=1),
-        np.concatenate([spread, np.repeat(other, count, axis=1)], axis=1),
+        np.concatenate([spread, _covariance(variance, "companion")], axis=1),
     )

@@ -17,7 +17,7 @@ FAR_M = 5e3
 def scores(data: Data) -> Data:
     """Return errors and consistency, as far as there is a truth."""
     result = _spread(data)
-    if "orbit_position" not in data:
+    if "orbit_position" not in data or "true_q_ic" not in data:
         return result
     with np.errstate(invalid="ignore"):
         return result | _errors(data) | _consistency(data)

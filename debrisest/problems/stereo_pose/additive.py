@@ -91,7 +91,7 @@ def first_order_transition(known: StereoGeometry, state: Array, k: int) -> Array
             leader,
             known.raw_rotation,
         )
-        return copies + known.step * result
+        return np.asarray(copies + known.steps[k] * result)
 
     return _moving_block(state, motion)
 

@@ -119,15 +119,16 @@ def propagate(known: StereoGeometry, state: Array, first: int, last: int) -> tup
     copies; those of the centre's motion are the setup's transition matrices.
     """
     direction = 1 if last >= first else -1
-    leaders = [known.moments_of_step(k, direction) for k in range(first, last, direction)]
-    states = np.repeat(state[:, None], len(leaders) + 1, axis=1)
+    passed = range(first, last, direction)
+    states = np.repeat(state[:, None], len(passed) + 1, axis=1)
     turning = np.empty((*states.shape[:2], 6, _TURNING))
     rate, q, k = _copies(state)
     slope = inertia_ratios.slopes(k)
     position, velocity = state[:, POSITION], state[:, VELOCITY]
     turning[:, 0] = _sensitivity(rate, q)
-    for epoch, leader in enumerate(leaders, start=1):
-        step = direction * known.step
+    for epoch, at in enumerate(passed, start=1):
+        leader = known.moments_of_step(at, direction)
+        step = direction * known.steps[min(at, at + direction)]
         position, velocity = translation_step(position, velocity, leader, step)
         rate, q = rotation_step(rate, q, slope, leader, step)
         states[:, epoch, POSITION], states[:, epoch, VELOCITY] = position, velocity
@@ -142,10 +143,10 @@ def rewind(known: StereoGeometry, state: Array, epoch: int) -> Array:
     for k in range(epoch, 0, -1):
         leader = known.moments_of_step(k, -1)
         result[:, POSITION], result[:, VELOCITY] = translation_step(
-            result[:, POSITION], result[:, VELOCITY], leader, -known.step
+            result[:, POSITION], result[:, VELOCITY], leader, -known.steps[k - 1]
         )
         result[:, RATE], result[:, Q] = rotation_step(
-            result[:, RATE], result[:, Q], slope, leader, -known.step
+            result[:, RATE], result[:, Q], slope, leader, -known.steps[k - 1]
         )
     return result
 

@@ -32,7 +32,7 @@ NAMES = {
 }
 """Where each estimated quantity lies in the state."""
 
-_DATASETS = {
+DATASETS = {
     "pixels": "pixel",
     "flow": "flow",
     "disparity": "disparity",
@@ -42,23 +42,22 @@ _DATASETS = {
 
 def shown_of(data: Data, measures: list[Measure] | None) -> Shown:
     """Return the groups to use: those that are asked for, or all that are measured."""
-    measured = [name for name, dataset in _DATASETS.items() if f"measured_{dataset}" in data]
+    measured = [name for name, dataset in DATASETS.items() if f"measured_{dataset}" in data]
     missing = [name for name in measures or [] if name not in measured]
     if missing:
         raise ValueError(
             f"{', '.join(missing)} cannot be used: no sensor measures it; "
             f"measured: {', '.join(measured)}"
         )
-    return Shown(**{name: name in (measures or measured) for name in _DATASETS})
+    return Shown(**{name: name in (measures or measured) for name in DATASETS})
 
 
 def geometry_of(
     data: Data, clock: Clock, measures: list[Measure] | None, raw: bool = False
 ) -> StereoGeometry:
-    """Return what is known without error: the leader's orbit, the cameras, the time step."""
+    """Return what is known without error: the leader's orbit, the cameras, the time steps."""
     return stereo_geometry(
-        len(clock.times),
-        clock.step,
+        clock,
         *kepler.shape_and_anomaly(data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]),
         points=data["start_point_b"].shape[1],
         baseline=float(data["baseline"][0]),

@@ -18,8 +18,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from debrisest.arrays import IntArray
+from debrisest.arrays import Array, IntArray
 from debrisest.attitude.vectors import cross
+from debrisest.clock import Clock
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import Leader, leader_orbit, translation_step
 from debrisest.dynamics.relative_rotation import rotate, rotation_step, unrotate
@@ -42,11 +43,12 @@ EVERYTHING_OF_CAMERAS = Shown()
 
 
 class StereoGeometry(NamedTuple):
-    """What is known without error: orbit, cameras, number of points; and the time step, s."""
+    """What is known without error: orbit, cameras, number of points; and the time steps, s."""
 
     leader: Leader
     """At epoch 0 and every half step after it."""
-    step: float
+    steps: Array
+    """From each epoch to the next, (epoch - 1,)."""
     points: int = 5
     baseline: float = 1.0
     shown: Shown = EVERYTHING_OF_CAMERAS
@@ -71,8 +73,7 @@ class StereoGeometry(NamedTuple):
 
 
 def stereo_geometry(
-    epochs: int,
-    step: float,
+    clock: Clock,
     semi_major_axis: float,
     eccentricity: float,
     true_anomaly: float,
@@ -81,10 +82,11 @@ def stereo_geometry(
     shown: Shown = EVERYTHING_OF_CAMERAS,
     raw_rotation: bool = False,
 ) -> StereoGeometry:
-    """Return the setup of ``epochs`` epochs (the first at the true anomaly), SI and rad."""
-    times = np.arange(2 * epochs - 1, dtype=np.float64) * (0.5 * step)
+    """Return the geometry at the clock's epochs (time zero at the true anomaly), SI and rad."""
+    epochs = np.arange(len(clock.times))
+    times = np.interp(np.arange(2 * len(epochs) - 1) / 2, epochs, clock.times)
     leader = leader_orbit(times, semi_major_axis, eccentricity, true_anomaly)
-    return StereoGeometry(leader, step, points, baseline, shown, raw_rotation)
+    return StereoGeometry(leader, clock.steps, points, baseline, shown, raw_rotation)
 
 
 def process(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
@@ -92,14 +94,14 @@ def process(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
     leader = known.moments_of_step(k)
     following = state.copy()
     following[..., POSITION], following[..., VELOCITY] = translation_step(
-        state[..., POSITION], state[..., VELOCITY], leader, known.step
+        state[..., POSITION], state[..., VELOCITY], leader, known.steps[k]
     )
     following[..., RATE], following[..., Q] = rotation_step(
         state[..., RATE],
         state[..., Q],
         inertia_ratios.slopes(state[..., K]),
         leader,
-        known.step,
+        known.steps[k],
         known.raw_rotation,
     )
     return following

@@ -12,6 +12,7 @@ from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.stereo_pose.additive import additive_model
 from debrisest.problems.stereo_pose.chart import ATTITUDE_ERROR
 from debrisest.problems.stereo_pose.data import (
+    DATASETS,
     NAMES,
     Measure,
     geometry_of,
@@ -30,14 +31,17 @@ from debrisest.roles import Keys, NonNegative, ProblemPart, Window
 class _StereoPose(ProblemPart):
     """What both forms share: the measurements, and how estimates are scored."""
 
-    needs: ClassVar[tuple[str, ...]] = (
-        "baseline",
-        "orbit_position",
-        "orbit_velocity",
-        "start_point_b",
-    )
+    needs: ClassVar[tuple[str, ...]] = ("baseline", "orbit_position", "orbit_velocity")
+    start_needs: ClassVar[tuple[str, ...]] = tuple(NAMES)
+    true_state = tuple(f"true_{name}" for name in NAMES)
     measures: list[Measure] | None = None
     score_delay_s: NonNegative = 0.0
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """Return the datasets that are needed: those measurements too that are asked for."""
+        asked = [DATASETS[name] for name in self.measures or []]
+        return (*self.needs, *(f"measured_{name}" for name in asked))
 
     def measurements(self, data: Data) -> Array:
         """Return the chosen measurements (run, time, m)."""
@@ -45,12 +49,12 @@ class _StereoPose(ProblemPart):
 
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors against the truth, or the truth a delay later, and consistency."""
-        step = data["time_s"][1] - data["time_s"][0]
-        return scores(data, round(self.score_delay_s / step))
+        late = Clock(data["time_s"] - data["time_s"][0]).nearest(self.score_delay_s)
+        return scores(data, late)
 
     def truth(self, data: Data) -> Array | None:
-        """Return the true states (run, time, n), where they are known."""
-        return state_of(data, "true_") if "true_q_lt" in data else None
+        """Return the true states (run, time, n)."""
+        return state_of(data, "true_")
 
 
 class ProcessNoise(Keys):
@@ -63,7 +67,7 @@ class ProcessNoise(Keys):
 class StereoPoseAdditive(_StereoPose):
     """All components of the state as errors, the quaternion's among them."""
 
-    gives: ClassVar[tuple[str, ...]] = ("model",)
+    model_kind = "model"
     kind: Literal["stereo_pose_additive"]
     process_noise: ProcessNoise = ProcessNoise()
     transition: Literal["exact", "first_order"] = "exact"
@@ -78,10 +82,9 @@ class StereoPoseAdditive(_StereoPose):
         noise = np.diag(noise_of(data, known) ** 2)
         return additive_model(known, np.diag(variance), noise, self.transition == "exact")
 
-    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+    def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, n) and covariance (run, n, n)."""
-        state = state_of(guess)
-        return state, _each(np.diag(_variances(variance, state)), len(state))
+        return state_of(guess), _diagonal(state_of(variance))
 
     def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""
@@ -91,21 +94,19 @@ class StereoPoseAdditive(_StereoPose):
 class StereoPose(_StereoPose):
     """The whole motion follows from its start: rotation vectors in place of quaternions."""
 
-    gives: ClassVar[tuple[str, ...]] = ("replay_model",)
-    needs = (*_StereoPose.needs, "start_position")
+    model_kind = "replay_model"
     kind: Literal["stereo_pose"]
 
     def model(self, data: Data, clock: Clock) -> ReplayModel:
         """Return trajectories, measurements and charts."""
         known = geometry_of(data, clock, self.measures)
-        variance = {name: float(data[f"start_{name}_sigma"].flat[0]) ** 2 for name in NAMES}
-        prior = _plain(_variances(variance, state_of(data, "start_")))
-        return replay_model(known, noise_of(data, known), np.sqrt(prior))
+        variance = {name: data[f"start_{name}_sigma"][:1] ** 2 for name in NAMES}
+        prior = np.sqrt(_plain(state_of(variance))[0])
+        return replay_model(known, noise_of(data, known), prior)
 
-    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+    def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, n) and the covariance (run, n_e, n_e) of its errors."""
-        state = state_of(guess)
-        return state, _each(np.diag(_plain(_variances(variance, state))), len(state))
+        return state_of(guess), _diagonal(_plain(state_of(variance)))
 
     def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma.
@@ -120,22 +121,16 @@ class StereoPose(_StereoPose):
         return _with_sigmas(filtered.state, np.concatenate(parts, axis=-1))
 
 
-def _variances(variance: dict[str, float], state: Array) -> Array:
-    """Return the variance of every component of the state (n,)."""
-    result = np.empty(state.shape[-1])
-    for name, where in NAMES.items():
-        result[where] = variance[name]
-    return result
-
-
 def _plain(variance: Array) -> Array:
     """Variances of plain errors: an angle is twice a component of the quaternion."""
-    angle = 4 * variance[Q.start : Q.start + 3]
-    return np.concatenate([variance[: Q.start], angle, variance[K.start :]])
+    angle = 4 * variance[..., Q.start : Q.start + 3]
+    parts = [variance[..., : Q.start], angle, variance[..., K.start :]]
+    return np.concatenate(parts, axis=-1)
 
 
-def _each(covariance: Array, runs: int) -> Array:
-    return np.tile(covariance, (runs, 1, 1))
+def _diagonal(variance: Array) -> Array:
+    """Covariances (run, n, n) of independent errors."""
+    return np.asarray(variance[..., None] * np.eye(variance.shape[-1]))
 
 
 def _with_sigmas(state: Array, sigma: Array) -> Data:

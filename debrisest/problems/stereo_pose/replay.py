@@ -32,7 +32,7 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
     which the start-up places the centre of mass and weighs its guess of the rates.
     """
     points = known.points
-    centre = transitions(known.leader, known.step)
+    centre = transitions(known.leader, known.steps)
     back = np.linalg.inv(centre)
     return ReplayModel(
         trajectory=lambda state, first, last: chart.propagate(known, state, first, last),

@@ -36,12 +36,13 @@ def first_guess(
     prior's. ``sigma (m,)`` is the measurements' noise.
     """
     frame, noise = _frame(known, shown), _frame(known, sigma[None])
+    time = known.steps[:epoch].sum()
     guess, velocity = points_in_view(prior, known.points)
-    cloud = _points(known, frame, guess + epoch * known.step * velocity)
+    cloud = _points(known, frame, guess + time * velocity)
     centre_velocity, rate = _rates(prior, prior_sigma, cloud, frame, noise)
     arms = cloud - cloud.mean(-2, keepdims=True)
     moving = centre_velocity[:, None] + cross(rate[:, None], arms)
-    cloud = cloud - epoch * known.step * moving
+    cloud = cloud - time * moving
     turn = quaternion.to_matrix(prior[:, Q])
     prior_arms = prior[:, POINTS].reshape(cloud.shape) @ np.swapaxes(turn, -1, -2)
     weight_r = prior_sigma[POSITION] ** -2.0

@@ -123,7 +123,8 @@ class TumblingAttitude(ProblemPart):
 
     version = 2
     needs = ("q_if",)
-    gives = ("model",)
+    model_kind = "model"
+    start_needs = ("q_ib", "q_bf", "rate_b", "moments_b")
     kind: Literal["tumbling_attitude"]
     integrator: Literal["euler", "rk4"]
     process_noise: Variances
@@ -134,10 +135,10 @@ class TumblingAttitude(ProblemPart):
         return data["q_if"]
 
     def model(self, data: Data, clock: Clock) -> Model:
-        """Return process and measurement of one clock step."""
-        integrator = _INTEGRATORS[self.integrator]
+        """Return process and measurement; each epoch has its own step, and all the same noise."""
+        integrator, steps = _INTEGRATORS[self.integrator], clock.steps
         return Model(
-            process=lambda state, _: process(state, clock.step, integrator),
+            process=lambda state, k: process(state, steps[k], integrator),
             measurement=lambda state, _: measured_attitude(state),
             process_noise=self.process_noise.diagonal(),
             measurement_noise=self.measurement_noise * np.eye(4),
@@ -146,13 +147,13 @@ class TumblingAttitude(ProblemPart):
             innovation=sign_free_innovation,
         )
 
-    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+    def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, 14) and covariance (run, 14, 14)."""
-        state = np.concatenate(
-            [guess["q_ib"], guess["q_bf"], guess["rate_b"], guess["moments_b"]], axis=-1
+        state, diagonal = (
+            np.concatenate([parts[name] for name in self.start_needs], axis=-1)
+            for parts in (guess, variance)
         )
-        covariance = Variances(**variance).diagonal()
-        return state, np.broadcast_to(covariance, (len(state), *covariance.shape)).copy()
+        return state, diagonal[..., None] * np.eye(14)
 
     def unpack(self, filtered: Estimates) -> Data:
         """Return the estimated quantities by name, each with its sigma."""

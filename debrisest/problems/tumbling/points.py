@@ -31,17 +31,14 @@ class MotionVariances(Keys):
     rate_rad2_s2: Positive
     log_inertia: Positive
 
-    def diagonal(self) -> Array:
-        """Return the covariance (11, 11)."""
-        blocks = (self.attitude_rad2, self.rate_rad2_s2, self.log_inertia)
-        return np.diag(np.repeat(blocks, (3, 3, 5)))
-
 
 class TumblingPoints(ProblemPart):
     """The whole motion follows from its start; the noise is that of the sensor."""
 
     needs = ("measured_point", "point_noise", "known_point_f")
-    gives = ("replay_model",)
+    model_kind = "replay_model"
+    start_needs = ("q_if", "rate_f", "log_inertia")
+    true_state = ("true_q_ib", "true_rate_b", "true_inertia_b", "true_point_b")
     kind: Literal["tumbling_points"]
 
     def measurements(self, data: Data) -> Array:
@@ -55,12 +52,13 @@ class TumblingPoints(ProblemPart):
         noise = float(data["point_noise"].flat[0])
         if not noise > 0.0:
             raise ValueError("points without noise weigh infinitely: noise_m must be positive")
-        return replay_model(data["known_point_f"], _seen(data), noise, clock.step)
+        return replay_model(data["known_point_f"], _seen(data), noise, clock.times)
 
-    def pack(self, guess: Data, variance: dict[str, float]) -> tuple[Array, Array]:
+    def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, 12) and the covariance (run, 11, 11) of its errors."""
         state = _state(guess["q_if"], guess["rate_f"], guess["log_inertia"])
-        return state, np.tile(MotionVariances(**variance).diagonal(), (len(state), 1, 1))
+        diagonal = np.concatenate([variance[name] for name in self.start_needs], axis=-1)
+        return state, diagonal[..., None] * np.eye(11)
 
     def unpack(self, filtered: Estimates) -> Data:
         """Return the estimates in principal axes by name, each with its sigma."""
@@ -76,9 +74,7 @@ class TumblingPoints(ProblemPart):
         return scores(data, scored, covariance)
 
     def truth(self, data: Data) -> Array | None:
-        """Return the true states (run, time, 12), where they are known."""
-        if "true_q_ib" not in data:
-            return None
+        """Return the true states (run, time, 12)."""
         frame = features_frame(data["true_point_b"])[:, None]
         inertia = np.swapaxes(frame, -1, -2) @ data["true_inertia_b"][:, None] @ frame
         q_if = quaternion.multiply(data["true_q_ib"], quaternion.from_matrix(frame))

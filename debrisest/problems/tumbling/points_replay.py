@@ -10,28 +10,29 @@ from debrisest.problems.tumbling import points_motion as body
 from debrisest.problems.tumbling.points_contrasts import contrasts
 
 
-def replay_model(known_point_f: Array, seen: BoolArray, noise: float, step: float) -> ReplayModel:
+def replay_model(known_point_f: Array, seen: BoolArray, noise: float, times: Array) -> ReplayModel:
     """Return the problem of ``seen (run, time, feature)`` points.
 
     ``known_point_f (run, feature, 3)``, m, in the feature frame; ``noise`` of a coordinate, m;
-    ``step`` of an epoch, s.
+    ``times (time,)`` of the epochs, s.
     """
     arms = contrasts(known_point_f[:, None], seen)
-    return _model(arms, np.arange(len(arms)), noise, step)
+    return _model(arms, np.arange(len(arms)), noise, times)
 
 
-def _model(arms: Array, runs: IntArray, noise: float, step: float) -> ReplayModel:
+def _model(arms: Array, runs: IntArray, noise: float, times: Array) -> ReplayModel:
     rows_of_epoch = 3 * arms.shape[-2]
 
     def trajectory(state: Array, first: int, last: int) -> tuple[Array, Array]:
-        count = abs(last - first) + 1
-        return body.trajectory(state, np.linspace(0.0, (last - first) * step, count))
+        step = 1 if last >= first else -1
+        passed = times[np.arange(first, last + step, step)]
+        return body.trajectory(state, passed - times[first])
 
     return ReplayModel(
         trajectory=trajectory,
         rows=lambda states, turning, _, epochs: rows(arms[runs[:, None], epochs], states, turning),
         transition=lambda turning, _, __: transition(turning),
-        rewind=lambda state, epoch: body.moved(state, -epoch * step),
+        rewind=lambda state, epoch: body.moved(state, times[0] - times[epoch]),
         chart=_identity,
         inverse_chart=_identity,
         retract=body.retract,
@@ -41,7 +42,7 @@ def _model(arms: Array, runs: IntArray, noise: float, step: float) -> ReplayMode
         sigma=np.full(rows_of_epoch, noise),
         error_names=body.ERROR_NAMES,
         displace=body.displace,
-        select=lambda chosen: _model(arms, runs[chosen], noise, step),
+        select=lambda chosen: _model(arms, runs[chosen], noise, times),
     )
 
 

@@ -7,7 +7,8 @@ import numpy as np
 from debrisest.arrays import Data
 from debrisest.assessment.consistency import chart_free
 from debrisest.assessment.statistics import per_dimension
-from debrisest.scenario.load import Case
+from debrisest.run.stages.reason import about
+from debrisest.scenario.case import Case
 
 VERSION = 2
 
@@ -31,10 +32,12 @@ def run(case: Case, estimator: str, data: Data) -> Data:
     chosen = case.scenario.estimators[estimator]
     result: Data = {}
     if chosen.recovery is not None:
-        result |= chosen.recovery.assess(data)
+        with about(f"estimators.{estimator}.recovery", chosen.recovery):
+            result |= chosen.recovery.assess(data)
     if chosen.problem is not None:
         result |= diagnostics(data)
-        result |= chosen.problem.assess(data, case.scenario.scored)
+        with about(f"estimators.{estimator}.problem", chosen.problem):
+            result |= chosen.problem.assess(data, case.scenario.scored)
     return result
 
 

@@ -5,8 +5,10 @@ from typing import Any
 import numpy as np
 
 from debrisest.arrays import Data
+from debrisest.clock import Clock
 from debrisest.roles import Given
-from debrisest.scenario.load import Case
+from debrisest.run.stages.reason import about
+from debrisest.scenario.case import Case
 
 VERSION = 1
 
@@ -23,16 +25,23 @@ def inputs(case: Case, estimator: str) -> dict[str, Any]:
 
 def run(case: Case, estimator: str, data: Data) -> Data:
     """Return the estimates over all epochs, and what the filter says of itself."""
-    chosen, clock = case.scenario.estimators[estimator], case.scenario.clock
+    chosen, clock = case.scenario.estimators[estimator], Clock(data["time_s"])
     problem, start, algorithm = chosen.problem, chosen.start, chosen.filter
     assert problem is not None and start is not None and algorithm is not None
-    model = problem.model(data, clock)
-    state, covariance = problem.pack(*start.start(data, clock))
-    measured = problem.measurements(data)
-    given = Given(state, covariance, measured, clock, problem.truth(data))
-    filtered = algorithm.run(model, given)
+    path = f"estimators.{estimator}"
+    with about(f"{path}.start", start):
+        guess = start.start(data, clock)
+    with about(f"{path}.problem", problem):
+        model, measured = problem.model(data, clock), problem.measurements(data)
+        known = all(name in data for name in problem.truth_needed)
+        truth = problem.truth(data) if known else None
+        given = Given(*problem.pack(*guess), measured, clock, truth)
+    with about(f"{path}.filter", algorithm):
+        filtered = algorithm.run(model, given)
+    with about(f"{path}.problem", problem):
+        estimates = problem.unpack(filtered)
     return {
-        **problem.unpack(filtered),
+        **estimates,
         "covariance_time_s": data["time_s"][filtered.kept],
         "error_name": np.array(model.error_names),
         "covariance": filtered.covariance,

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from debrisest.arrays import Data
+from debrisest.run.stages.reason import reason
 from debrisest.vocabulary import has_runs
 
 MACHINE_FAILURES = (MemoryError, OSError)
@@ -36,7 +37,7 @@ def isolate(compute: Callable[[Data], Data], data: Data) -> Data:
                 except MACHINE_FAILURES:
                     raise
                 except Exception as error:
-                    failure[run] = f"{type(error).__name__}: {error}"
+                    failure[run] = reason(error)
     result = _scatter(results, runs) if results else {}
     return {**result, "run": data["run"], "failure": np.array(failure)}
 

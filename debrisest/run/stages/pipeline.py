@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from debrisest.arrays import Data
 from debrisest.run.stages import assess, filter, recover, simulate
-from debrisest.scenario.load import Case
+from debrisest.scenario.case import Case
 
 
 class Stage(NamedTuple):

@@ -3,7 +3,9 @@
 from typing import Any
 
 from debrisest.arrays import Data
-from debrisest.scenario.load import Case
+from debrisest.clock import Clock
+from debrisest.run.stages.reason import about
+from debrisest.scenario.case import Case
 
 VERSION = 1
 
@@ -19,4 +21,5 @@ def run(case: Case, estimator: str, data: Data) -> Data:
     """Return what the estimator's recovery makes of the measurements."""
     recovery = case.scenario.estimators[estimator].recovery
     assert recovery is not None
-    return recovery.recover(data, case.scenario.clock)
+    with about(f"estimators.{estimator}.recovery", recovery):
+        return recovery.recover(data, Clock(data["time_s"]))

@@ -1,10 +1,11 @@
-"""Simulate: truth and measurements of a case, part by part."""
+"""Simulate: known and measured data of a case, part by part, with their truth; or from files."""
 
 from typing import Any
 
 from debrisest.arrays import Data
 from debrisest.draws import Draws
-from debrisest.scenario.load import Case
+from debrisest.run.stages.reason import about
+from debrisest.scenario.case import Case
 
 VERSION = 1
 
@@ -12,20 +13,21 @@ VERSION = 1
 def inputs(case: Case, _: str) -> dict[str, Any]:
     """Return everything that the result of this stage depends on."""
     scenario = case.scenario
-    return {
-        "version": VERSION,
-        "case": case.name,
-        **scenario.model_dump(mode="json", include={"seed", "duration_s", "step_s"}),
-        **{name: part.fingerprint() for name, part in scenario.simulation.items()},
-    }
+    parts = {name: part.fingerprint() for name, part in scenario.simulation.items()}
+    if case.source:
+        source = case.source.fingerprint() | {"digest": case.source.digest(case.folder)}
+        return {"version": VERSION, "measured": source, **parts}
+    told = scenario.model_dump(mode="json", include={"seed", "duration_s", "step_s"})
+    return {"version": VERSION, "case": case.name, **told, **parts}
 
 
 def run(case: Case, _: str, data: Data) -> Data:
-    """Return truth and measurements of the runs whose numbers are in ``data``."""
-    scenario = case.scenario
-    draws = Draws(scenario.seed, case.name, data["run"].astype(int).tolist())
-    result: Data = {"time_s": scenario.clock.times}
+    """Return what is known and measured of the runs whose numbers are in ``data``."""
+    scenario, clock, runs = case.scenario, case.clock, data["run"].astype(int)
+    draws = Draws(scenario.seed, case.name, runs.tolist())
+    result: Data = case.measured_runs(runs) if case.source else {"time_s": clock.times}
     for path, part in scenario.simulation.items():
         name = path.partition(".")[2]
-        result |= part.simulate_named(name, result, scenario.clock, draws)
+        with about(path, part):
+            result |= part.simulate_named(name, result, clock, draws)
     return result

@@ -10,9 +10,10 @@ from scipy.spatial.transform import Rotation
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import kepler, perturbed_orbit
+from debrisest.parts.sensors.attitude_knowledge import AttitudeKnowledge
 from debrisest.parts.sensors.detections import Detections
-from debrisest.parts.sensors.tracking import AttitudeKnowledge, OrbitGuess
-from debrisest.parts.starts.starts import Drawn
+from debrisest.parts.starts.drawn_orbit import DrawnOrbit
+from debrisest.parts.starts.guess import Guess
 from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels
 
 
@@ -23,7 +24,7 @@ class TwoObservers:
     written out as a chain of direction cosines.
     """
 
-    CLOCK = Clock(470.0, 1.0)
+    CLOCK = Clock.regular(470.0, 1.0)
     ENDS = np.radians([[5.4, -0.9, 21.8], [5.8, -1.7, 36.5]])
 
     def __init__(self, runs, seed=1, noise=0.0, bias_mrad=0.0, **points):
@@ -59,7 +60,7 @@ class TwoObservers:
         for part in (
             AttitudeKnowledge(kind="attitude_knowledge", bias_mrad=bias_mrad),
             Detections(kind="detections", **points),
-            OrbitGuess(kind="orbit_guess", position_sigma_m=100.0, velocity_sigma_m_s=100.0),
+            DrawnOrbit(kind="drawn_orbit", position_sigma_m=100.0, velocity_sigma_m_s=100.0),
         ):
             self.data |= part.simulate(self.data, self.CLOCK, draws)
 
@@ -92,7 +93,7 @@ class TwoObservers:
 
     def given(self, problem):
         """Model, first guess, covariance, detections."""
-        guess = Drawn(kind="drawn").start(self.data, self.CLOCK)
+        guess = Guess(kind="guess").start(self.data, self.CLOCK)
         model = problem.model(self.data, self.CLOCK)
         return model, *problem.pack(*guess), problem.measurements(self.data)
 

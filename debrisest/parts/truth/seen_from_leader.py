@@ -10,6 +10,7 @@ from debrisest.draws import Draws
 from debrisest.dynamics import kepler
 from debrisest.dynamics.relative_orbit import leader_orbit
 from debrisest.dynamics.relative_pose import exact_rotation, exact_translation
+from debrisest.parts.truth.each_run import each_run
 from debrisest.roles import SimulationPart, UnitQuaternion, Vector3
 
 _FRAME = "leader's orbital frame (radially outward, along track, orbit normal), origin at leader"
@@ -22,7 +23,7 @@ class SeenFromLeader(SimulationPart):
     """
 
     needs = ("true_inertia_ratio", "orbit_position", "orbit_velocity")
-    gives = ("true_position", "true_velocity", "true_q_lt", "true_rate_l")
+    truths = ("true_position", "true_velocity", "true_q_lt", "true_rate_l")
     frames = {"true_position": _FRAME, "true_velocity": _FRAME}
     kind: Literal["seen_from_leader"]
     position_m: Vector3
@@ -46,8 +47,7 @@ class SeenFromLeader(SimulationPart):
             leader,
         )
         return {
-            "true_position": np.broadcast_to(position, (runs, *position.shape)),
-            "true_velocity": np.broadcast_to(velocity, (runs, *velocity.shape)),
+            **each_run({"true_position": position, "true_velocity": velocity}, draws),
             "true_q_lt": q_lt,
             "true_rate_l": rate_l,
         }

@@ -8,26 +8,29 @@ from pydantic import Field
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
-from debrisest.roles import Positive, SimulationPart, StartPart
+from debrisest.roles import Positive, SimulationPart
 from debrisest.target.start_frame import in_start_frame
 
 
-class ShapeGuess(SimulationPart):
+class DrawnShape(SimulationPart):
     """Position, rate and inertia drawn about the truth, no velocity, all points at one depth.
 
     The first image gives the points' directions; their depth is that of the centre of mass. Body
     axes are the camera's at time zero.
     """
 
-    needs = ("image_point", "measured_range", "true_q_hc", "true_q_ib", "true_inertia_b")
-    gives = tuple(
+    needs = (
+        *("image_point", "measured_range", "focal_px"),
+        *("chaser_position_h", "true_q_hc", "true_q_ib", "true_rate_b", "true_inertia_b"),
+    )
+    knows = tuple(
         f"start_{name}"
         for name in (
             *("relative_position_h", "relative_velocity_h", "q_cb", "rate_b", "inertia_b"),
             *("point_b", "point_c"),
         )
     )
-    kind: Literal["shape_guess"]
+    kind: Literal["drawn_shape"]
     position_sigma_m: Positive = Field(2.0, description="the length is then the measured range")
     velocity_sigma_m_s: Positive = Field(0.03, description="of the guess zero")
     q_sigma: Positive = Field(1e-3, description="of each component; the guess is exact")
@@ -78,18 +81,6 @@ class ShapeGuess(SimulationPart):
         across = np.where(seen, self.point_sigma_m, self.depth_sigma_m)
         sigma = np.stack([across, across, np.full_like(across, self.depth_sigma_m)], axis=-1)
         return point, sigma
-
-
-class Guessed(StartPart):
-    """The sensor's first guess as it stands, with a sigma for every component."""
-
-    needs = ("start_relative_position_h", "start_point_c")
-    kind: Literal["guessed"]
-
-    def start(self, data: Data, clock: Clock) -> tuple[Data, dict[str, float]]:
-        """Return the initial guess by name, each with its ``_sigma``; no further variances."""
-        guesses = {name for name in data if name.startswith("start_")}
-        return {name.removeprefix("start_"): data[name] for name in guesses}, {}
 
 
 def _symmetric(elements: Array) -> Array:

@@ -9,6 +9,7 @@ from debrisest.arrays import Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import clohessy_wiltshire
+from debrisest.parts.truth.each_run import each_run
 from debrisest.roles import SimulationPart, Vector3
 
 _FRAME = "Hill frame (radially outward, along track, orbit normal), origin at the target"
@@ -29,7 +30,7 @@ class ClosedEllipse(SimulationPart):
     """Drifts on the closed relative ellipse through a point; linearised, the orbit is a circle."""
 
     needs = ("orbit_position", "orbit_velocity")
-    gives = ("chaser_position_h", "chaser_velocity_h")
+    truths = ("chaser_position_h", "chaser_velocity_h")
     frames = {"chaser_position_h": _FRAME, "chaser_velocity_h": _FRAME}
     tried = True
     kind: Literal["closed_ellipse"]
@@ -42,11 +43,7 @@ class ClosedEllipse(SimulationPart):
         position, velocity = clohessy_wiltshire.propagate(
             np.array(self.position_m), np.array(self.velocity_m_s), mean_motion, clock.times
         )
-        runs = len(draws.runs)
-        return {
-            "chaser_position_h": np.broadcast_to(position, (runs, *position.shape)),
-            "chaser_velocity_h": np.broadcast_to(velocity, (runs, *velocity.shape)),
-        }
+        return each_run({"chaser_position_h": position, "chaser_velocity_h": velocity}, draws)
 
     def _mean_motion(self, data: Data) -> float:
         """Mean motion of the target; ValueError if its orbit or the ellipse is not as needed."""

@@ -9,13 +9,13 @@ from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics import kepler, perturbed_orbit
-from debrisest.parts.truth.orbits import ClassicalElements
+from debrisest.parts.truth.elements import ClassicalElements
 
 
 class Satellite(ClassicalElements):
     """A satellite that observes; each further one of a scenario is added to the others."""
 
-    extends = ("observer", "observer_position", "observer_velocity")
+    knows = extends = ("observer", "observer_position", "observer_velocity")
     kind: Literal["satellite"]
     j2: bool = Field(False, description="the Earth's oblateness")
 

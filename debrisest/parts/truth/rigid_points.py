@@ -9,6 +9,7 @@ from debrisest.arrays import Array, Data
 from debrisest.attitude.points import features_frame
 from debrisest.clock import Clock
 from debrisest.draws import Draws
+from debrisest.parts.truth.each_run import each_run
 from debrisest.roles import Keys, SimulationPart, Vector3
 
 
@@ -75,7 +76,8 @@ def _at_least_three(points: dict[str, Feature]) -> dict[str, Feature]:
 class RigidPoints(SimulationPart):
     """Named features on a rigid body; the origin is the centre of mass, the axes are ``b``."""
 
-    gives = ("true_point_b", "true_normal_b", "true_inertia_b", "known_point_f")
+    truths = ("true_point_b", "true_normal_b", "true_inertia_b")
+    knows = ("known_point_f",)
     kind: Literal["rigid_points"]
     inertia_kg_m2: Inertia = Field(
         description="three principal moments, or the rows of the tensor; scale is free"
@@ -84,15 +86,15 @@ class RigidPoints(SimulationPart):
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the body's geometry and inertia, the same in every run."""
-        runs, positions = len(draws.runs), self._positions()
+        positions = self._positions()
         frame = features_frame(positions)
-        return {
-            "feature": np.array(list(self.points)),
-            "known_point_f": _each_run((positions - positions[0]) @ frame, runs),
-            "true_point_b": _each_run(positions, runs),
-            "true_normal_b": _each_run(self._normals(), runs),
-            "true_inertia_b": _each_run(inertia_tensor(self.inertia_kg_m2), runs),
+        same = {
+            "known_point_f": (positions - positions[0]) @ frame,
+            "true_point_b": positions,
+            "true_normal_b": self._normals(),
+            "true_inertia_b": inertia_tensor(self.inertia_kg_m2),
         }
+        return {"feature": np.array(list(self.points)), **each_run(same, draws)}
 
     def _positions(self) -> Array:
         return np.array([feature.position_m for feature in self.points.values()])
@@ -100,7 +102,3 @@ class RigidPoints(SimulationPart):
     def _normals(self) -> Array:
         normals = np.array([feature.normal for feature in self.points.values()])
         return np.asarray(normals / np.linalg.norm(normals, axis=-1, keepdims=True))
-
-
-def _each_run(value: Array, runs: int) -> Array:
-    return np.broadcast_to(value, (runs, *value.shape))

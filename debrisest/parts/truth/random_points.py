@@ -34,7 +34,7 @@ class RandomPoints(SimulationPart):
     """
 
     version = 2
-    gives = ("true_point_b", "true_normal_b", "true_inertia_ratio", "true_inertia_b")
+    truths = ("true_point_b", "true_normal_b", "true_inertia_ratio", "true_inertia_b")
     kind: Literal["random_points"]
     count: Annotated[int, Field(ge=3)]
     half_size_m: Positive

@@ -41,12 +41,12 @@ class PointingControl(SimulationPart):
     version = 2
     tried = True
     needs = _INPUTS
-    gives = (
-        *("true_q_ic", "true_euler", "section", "true_pixel", "cameras_at_start"),
-        *("pointing_status", "control_time_s", "torque", "control_pixel"),
-        *("first_section", "settling_time", "stage_one_time"),
+    truths = (
+        *("true_q_ic", "true_euler", "true_pixel", "cameras_at_start", "pointing_status"),
+        *("control_pixel", "first_section", "settling_time", "stage_one_time"),
         *("peak_torque", "total_variation", "final_angle"),
     )
+    knows = ("section", "control_time_s", "torque")
     kind: Literal["pointing_control"]
     inertia_kg_m2: Annotated[list[Vector3], Field(min_length=3, max_length=3)]
     axes: Axes = Field("repaired", description="local orbital axes that angles count from")
@@ -87,7 +87,8 @@ class PointingControl(SimulationPart):
         if self.errors == "white" or any((x != x[:1]).any() for x in inputs):
             return _simulated(self, inputs, clock, draws)
         packed = ((x.shape[1:], x[0].tobytes()) for x in inputs)
-        one, runs = _simulated_once(self.model_dump_json(), clock, *packed), len(draws.runs)
+        times, runs = clock.times.tobytes(), len(draws.runs)
+        one = _simulated_once(self.model_dump_json(), times, *packed)
         return {
             name: np.repeat(value, runs, axis=0) if has_runs(name) else value.copy()
             for name, value in one.items()
@@ -95,9 +96,10 @@ class PointingControl(SimulationPart):
 
 
 @lru_cache(maxsize=4)
-def _simulated_once(part: str, clock: Clock, *inputs: tuple[tuple[int, ...], bytes]) -> Data:
+def _simulated_once(part: str, times: bytes, *inputs: tuple[tuple[int, ...], bytes]) -> Data:
     """The same for all chunks of runs that have the same inputs."""
     arrays = [np.frombuffer(values).reshape(1, *shape) for shape, values in inputs]
+    clock = Clock(np.frombuffer(times))
     return _simulated(PointingControl.model_validate_json(part), arrays, clock, None)
 
 

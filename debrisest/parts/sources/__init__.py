@@ -1,0 +1,1 @@
+"""Sources of measured data that a scenario can name."""

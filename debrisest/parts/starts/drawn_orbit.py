@@ -1,0 +1,25 @@
+"""What is known at first of the orbit of a piece of debris."""
+
+from typing import Literal
+
+from debrisest.arrays import Data
+from debrisest.clock import Clock
+from debrisest.draws import Draws, drawn_about
+from debrisest.roles import Positive, SimulationPart
+
+
+class DrawnOrbit(SimulationPart):
+    """An estimate of the debris' orbit at time zero, drawn about the truth."""
+
+    needs = ("orbit_position", "orbit_velocity")
+    knows = ("start_orbit_position", "start_orbit_velocity")
+    kind: Literal["drawn_orbit"]
+    position_sigma_m: Positive
+    velocity_sigma_m_s: Positive
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return the drawn state and its known sigma."""
+        position, velocity = data["orbit_position"][:, 0], data["orbit_velocity"][:, 0]
+        return drawn_about("start_orbit_position", position, self.position_sigma_m, draws) | (
+            drawn_about("start_orbit_velocity", velocity, self.velocity_sigma_m_s, draws)
+        )

@@ -1,0 +1,46 @@
+"""What is known at first of a target that a leader has approached."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from debrisest.arrays import Data
+from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.draws import Draws, drawn_about
+from debrisest.roles import Positive, SimulationPart
+
+_NAMES = ("position", "velocity", "rate_l", "q_lt", "inertia_ratio", "point_b")
+
+
+class DrawnPose(SimulationPart):
+    """An estimate at time zero, drawn about the truth, the same for all estimators."""
+
+    needs = tuple(f"true_{name}" for name in _NAMES)
+    knows = tuple(f"start_{name}" for name in _NAMES)
+    kind: Literal["drawn_pose"]
+    position_sigma_m: Positive
+    velocity_sigma_m_s: Positive
+    rate_sigma_deg_s: Positive
+    q_sigma: Positive = Field(description="of every component; twice that is the angle's")
+    inertia_ratio_sigma: Positive
+    point_sigma_m: Positive
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return the drawn state and its known sigma; the quaternion has unit norm again."""
+        sigmas = {
+            "position": self.position_sigma_m,
+            "velocity": self.velocity_sigma_m_s,
+            "rate_l": float(np.radians(self.rate_sigma_deg_s)),
+            "q_lt": self.q_sigma,
+            "inertia_ratio": self.inertia_ratio_sigma,
+            "point_b": self.point_sigma_m,
+        }
+        result: Data = {}
+        for name, sigma in sigmas.items():
+            constant = name in ("inertia_ratio", "point_b")
+            true = data[f"true_{name}"] if constant else data[f"true_{name}"][:, 0]
+            result |= drawn_about(f"start_{name}", true, sigma, draws)
+        result["start_q_lt"] = quaternion.normalize(result["start_q_lt"])
+        return result

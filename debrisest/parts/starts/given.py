@@ -1,0 +1,127 @@
+"""A first guess that is written down, in the scenario or in a table beside it."""
+
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from debrisest.arrays import Array, Data
+from debrisest.clock import Clock
+from debrisest.draws import Draws
+from debrisest.roles import Keys, NonNegative, SimulationPart
+from debrisest.vocabulary import AXIS_LENGTH, VOCABULARY, possible_units, table_scale
+
+Nested = float | list[float] | list[list[float]]
+_COLUMNS = ["name", "component", "value", "sigma"]
+
+
+class GuessedQuantity(Keys):
+    """A value with its standard deviation, the same in all components or one for each."""
+
+    value: Nested
+    sigma: NonNegative | list[NonNegative] | list[list[NonNegative]]
+    unit: str | None = Field(None, description="default: SI and radians")
+
+
+class GivenGuess(SimulationPart):
+    """Values with their standard deviations, the same in every run."""
+
+    kind: Literal["given"]
+    quantities: dict[str, GuessedQuantity] = Field(
+        {}, description="name of an estimated quantity: value, sigma and unit"
+    )
+    file: str | None = Field(None, description="CSV with the columns name,component,value,sigma")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_file(cls, keys: Any, info: ValidationInfo) -> Any:
+        """Add what the file says to the quantities, so that a changed file is noticed."""
+        if not isinstance(keys, dict) or not isinstance(keys.get("file"), str):
+            return keys
+        path = Path((info.context or {}).get("folder", ".")) / keys["file"]
+        return keys | {"quantities": {**keys.get("quantities", {}), **_read(path)}}
+
+    @field_validator("quantities")
+    @classmethod
+    def _fitting(cls, quantities: dict[str, GuessedQuantity]) -> dict[str, GuessedQuantity]:
+        for name, quantity in quantities.items():
+            _require_fitting(name, quantity)
+        return quantities
+
+    @model_validator(mode="after")
+    def _not_empty(self) -> "GivenGuess":
+        if not self.quantities:
+            raise ValueError("nothing is given; give quantities, or a file that has them")
+        return self
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Return the datasets of the quantities that are given."""
+        return tuple(f"start_{name}" for name in self.quantities)
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return each first guess and its sigma, in SI and radians."""
+        result: Data = {}
+        for name, quantity in self.quantities.items():
+            scale = table_scale(f"start_{name}", quantity.unit or "")
+            value = np.asarray(quantity.value, dtype=np.float64) / scale
+            sigma = np.broadcast_to(np.asarray(quantity.sigma) / scale, value.shape)
+            for end, each in (("", value), ("_sigma", sigma)):
+                result[f"start_{name}{end}"] = np.tile(each, (len(draws.runs), *[1] * value.ndim))
+        return result
+
+
+def _require_fitting(name: str, quantity: GuessedQuantity) -> None:
+    declared = VOCABULARY.get(f"start_{name}")
+    if declared is None:
+        known = [other.removeprefix("start_") for other in VOCABULARY if other.startswith("start_")]
+        allowed = [other for other in known if not other.endswith("_sigma")]
+        raise ValueError(f"no estimator starts from {name!r}; allowed: {', '.join(allowed)}")
+    units = [unit for unit in possible_units(f"start_{name}") if unit]
+    if quantity.unit is not None and quantity.unit not in units:
+        raise ValueError(f"{name} cannot be in {quantity.unit!r}; allowed: {', '.join(units)}")
+    axes = declared.axes[1:]
+    lengths = [AXIS_LENGTH.get(axis) for axis in axes]
+    shape = _shape(name, quantity.value)
+    if len(shape) != len(axes) or any(n not in (None, s) for n, s in zip(lengths, shape)):
+        wanted = " x ".join(f"{axis} ({n or 'any number'})" for axis, n in zip(axes, lengths))
+        raise ValueError(f"{name} needs {wanted} values, found {' x '.join(map(str, shape))}")
+    if _shape(name, quantity.sigma) not in ((), shape):
+        raise ValueError(f"{name}: sigma is one number, or one for each value")
+
+
+def _shape(name: str, values: Any) -> tuple[int, ...]:
+    try:
+        return np.asarray(values, dtype=np.float64).shape
+    except ValueError:
+        raise ValueError(f"{name}: all rows need as many values") from None
+
+
+def _read(path: Path) -> dict[str, Any]:
+    """Quantities of a CSV; components are counted from 1, rows of a table after each other."""
+    try:
+        table = pd.read_csv(path, dtype={"name": str})
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror or 'cannot be read'}") from None
+    except ValueError as error:
+        raise ValueError(f"{path}: not a CSV: {str(error).splitlines()[0]}") from None
+    if list(table.columns) != _COLUMNS:
+        raise ValueError(f"{path}: the columns must be {','.join(_COLUMNS)}")
+    return {str(name): _quantity(path, str(name), rows) for name, rows in table.groupby("name")}
+
+
+def _quantity(path: Path, name: str, rows: pd.DataFrame) -> dict[str, Any]:
+    rows = rows.sort_values("component")
+    if rows["component"].tolist() != list(range(1, len(rows) + 1)):
+        raise ValueError(f"{path}: the components of {name} must be 1 to {len(rows)}, each once")
+    axes = VOCABULARY[f"start_{name}"].axes[1:] if f"start_{name}" in VOCABULARY else ()
+    width = AXIS_LENGTH.get(axes[-1], 0) if len(axes) == 2 else 0
+    return {key: _folded(rows[key].to_numpy(np.float64), width) for key in ("value", "sigma")}
+
+
+def _folded(values: Array, width: int) -> Any:
+    """Rows of as many values as the last axis has, where there are two axes."""
+    whole = width and len(values) % width == 0
+    return values.reshape(-1, width).tolist() if whole else values.tolist()

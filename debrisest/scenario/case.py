@@ -1,0 +1,81 @@
+"""One experiment of a scenario file."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from debrisest.arrays import Data, IntArray
+from debrisest.clock import Clock
+from debrisest.plugins.load import Plugin, load_plugins
+from debrisest.roles import SourcePart
+from debrisest.scenario.schema import TOLD_BY_DATA, Scenario, scenario_model
+from debrisest.vocabulary import has_runs
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scenario with the case's changes and the overrides laid on it.
+
+    Only plain data travels to other processes; the scenario is validated again where it is used.
+    """
+
+    scenario_name: str
+    name: str
+    document: dict[str, Any]
+    folder: Path
+    """From which the paths of files in the scenario count."""
+    plugins: tuple[Plugin, ...] = ()
+
+    @cached_property
+    def scenario(self) -> Scenario:
+        """Return the validated scenario of this case."""
+        load_plugins(self.plugins)
+        scenario: Scenario = scenario_model().model_validate(
+            self.document, context={"folder": self.folder}
+        )
+        return scenario
+
+    @cached_property
+    def measured(self) -> Data:
+        """Return what the files of a measured scenario hold; nothing for a simulated one."""
+        source = self.scenario.measured
+        return {} if source is None else source.read(self.folder)
+
+    @property
+    def source(self) -> SourcePart | None:
+        """Return where measured data come from, in the place of a simulation."""
+        return self.scenario.measured
+
+    @property
+    def clock(self) -> Clock:
+        """Return the epochs."""
+        return Clock(self.measured["time_s"]) if self.source else self.scenario.clock
+
+    @property
+    def estimators(self) -> list[str]:
+        """Return the estimators that are used in this case."""
+        every = self.scenario.estimators.items()
+        return [name for name, one in every if one.cases is None or self.name in one.cases]
+
+    def runs(self, wanted: int | None) -> int:
+        """Return how many runs there are to be, of measured data no more than there are."""
+        runs = self.scenario.runs
+        return min(wanted or runs, runs) if self.source else wanted or runs
+
+    def measured_runs(self, runs: IntArray) -> Data:
+        """Return the measured data of some runs."""
+        data = {name: v[runs] if has_runs(name) else v for name, v in self.measured.items()}
+        return {name: np.asarray(value) for name, value in data.items()}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {key: v for key, v in self.__dict__.items() if key not in ("scenario", "measured")}
+
+    def as_yaml(self) -> str:
+        """Return the resolved scenario as YAML."""
+        told = TOLD_BY_DATA if self.source else ()
+        resolved = self.scenario.model_dump(mode="json", exclude=set(told))
+        return yaml.safe_dump(resolved, sort_keys=False)
