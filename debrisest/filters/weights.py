@@ -35,7 +35,7 @@ def hard(residual: Array) -> Array:
 
 
 def innovation_gate(innovation: Array, derivative: Array, covariance: Array) -> Array:
-    """Weights ``(..., m)`` of normalised innovations, each row judged by itself.
+    """Weights ``(..., m)`` of normalised innovations, each row judged by itself, without a solver.
 
     `derivative` (..., m, n_e) is that of normalised rows, `covariance` (..., n_e, n_e) that of
     the prediction.

@@ -82,6 +82,7 @@ def update(
 def _judge(
     innovation: Array, usable: BoolArray, total: Array, gate: float, weigh: Weigh
 ) -> tuple[Judged, Array]:
+    """Detections by their distances, for which all those of a sensor share one solution with S."""
     present = usable[..., None] & np.isfinite(innovation).all(-1)
     nu = np.where(present[..., None], innovation, 0.0)
     white = np.swapaxes(solve(total, np.swapaxes(nu, -2, -1)), -2, -1)

@@ -43,6 +43,9 @@ def update(
 ) -> tuple[Belief, Frame]:
     """Iterated update with the measurements of epoch k, each run until it has converged.
 
+    In information form a step also promises its decrease of the cost, which says when to end: apart
+    from `debrisest.filters.iterated`, which asks by how much a gain moves the state.
+
     With `gate`, the weights of the epoch's rejected rows are set to zero in `arc`.
     """
     frame = slice(k, k + 1)

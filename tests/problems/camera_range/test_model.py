@@ -31,7 +31,7 @@ def test_the_truth_shows_what_was_simulated(case) -> None:
     np.testing.assert_allclose(observed.common, rows.common, atol=1e-9)
 
 
-def test_derivatives_of_the_sights(case) -> None:
+def test_derivatives_of_the_rows(case) -> None:
     model, cores = case.model, case.core
     points, epochs = case.points[:, None], np.arange(12)
     rows = model.rows(cores, points, epochs)

@@ -80,6 +80,18 @@ def test_tracks_are_one_more_axis(two_observers) -> None:
     np.testing.assert_allclose(covariance[1, 0], np.diag([1e4] * 6))
 
 
+def test_some_runs_are_shown_what_they_are_among_all(two_observers) -> None:
+    """With attitude errors of their own, and scales that differ."""
+    scene = two_observers(3, bias_mrad=10.0)
+    data = scene.data | {"camera_scale": np.array([300.0, 335.0, 370.0])}
+    problem, some = scene.problem(attitude_bias=True), np.array([2, 0])
+    model, state = problem.model(data, scene.CLOCK), problem.truth(scene.data)[:, 30]
+    assert np.ptp(model.points(state, 30), axis=0).min() > 1.0
+    for name in ("points", "points_jacobian", "process", "process_jacobian"):
+        part, whole = getattr(model.of(some), name), getattr(model, name)
+        np.testing.assert_array_equal(part(state[some], 30), whole(state, 30)[some])
+
+
 def test_without_companions_all_tracks_is_one(two_observers) -> None:
     _, state, covariance, _ = two_observers(2).given(two_observers(2).problem(tracks="all"))
     assert state.shape == (2, 1, 6) and covariance.shape == (2, 1, 6, 6)
