@@ -50,7 +50,7 @@ _TIME = ("run", "time_s")
 _TIME_VECTOR = (*_TIME, "axis")
 _TIME_QUATERNION = (*_TIME, "quaternion")
 _TIME_RATIO = (*_TIME, "ratio")
-_TIME_IMAGE = (*_TIME, "camera", "feature", "image_axis")
+_TIME_IMAGE = (*_TIME, "camera", "detection", "image_axis")
 _TIME_OBSERVER = (*_TIME, "observer")
 _CONTROL = ("run", "control_time_s", "observer")
 _COMPANION = ("run", "companion", "axis")
@@ -96,12 +96,14 @@ VOCABULARY: dict[str, Quantity] = {
     "true_rate_l": Quantity(_TIME_VECTOR, "rad/s", "rate relative to leader's frame, in its axes"),
     "true_inertia_ratio": Quantity(("run", "ratio"), "1", "ln(Ix/Iy) and ln(Iy/Iz)"),
     "baseline": Quantity(_RUN, "m", "distance between the cameras"),
-    "measured_pixel": Quantity(_TIME_IMAGE, "1", "slopes of features, focal length 1"),
-    "pixel_noise": Quantity(_RUN, "1", "1-sigma noise of slopes"),
-    "measured_flow": Quantity(_TIME_IMAGE, "1/s", "time derivative of slopes"),
-    "flow_noise": Quantity(_RUN, "1/s", "1-sigma noise of the flow"),
-    "measured_disparity": Quantity((*_TIME, "feature"), "1", "difference between both cameras"),
-    "disparity_noise": Quantity(_RUN, "1", "1-sigma noise of the disparity"),
+    "measured_pixel": Quantity(
+        _TIME_IMAGE, "px", "pixels of the features in their order, or of points without labels"
+    ),
+    "pixel_noise": Quantity(_RUN, "px", "1-sigma noise of pixels, rounding included"),
+    "measured_flow": Quantity(_TIME_IMAGE, "px/s", "time derivative of pixels"),
+    "flow_noise": Quantity(_RUN, "px/s", "1-sigma noise of the flow"),
+    "measured_disparity": Quantity((*_TIME, "feature"), "px", "difference between both cameras"),
+    "disparity_noise": Quantity(_RUN, "px", "1-sigma noise of the disparity"),
     "measured_angular_acceleration": Quantity(_TIME_VECTOR, "rad/s2", "in principal axes"),
     "angular_acceleration_noise": Quantity(_RUN, "rad/s2", "1-sigma noise per axis"),
     "start_position": Quantity(_RUN_VECTOR, "m", "first guess of the position"),
@@ -118,7 +120,6 @@ VOCABULARY: dict[str, Quantity] = {
     "start_point_b_sigma": Quantity(_POINT, "m", "its 1-sigma"),
     "measured_point": Quantity((*_TIME, "feature", "axis"), "m", "feature relative to the chaser"),
     "point_noise": Quantity(_RUN, "m", "1-sigma noise of each coordinate of a feature"),
-    "camera_scale": Quantity(_RUN, "px", "focal length in pixels"),
     "image_half_size": Quantity(("run", "image_axis"), "px", "half the width and the height"),
     "true_q_ic": Quantity((*_TIME_OBSERVER, "quaternion"), "1", "attitude of the cameras"),
     "known_q_ic": Quantity(
@@ -130,9 +131,6 @@ VOCABULARY: dict[str, Quantity] = {
     "section": Quantity(_TIME, "1", "even: estimation, odd: the cameras are turned"),
     "true_pixel": Quantity(
         (*_TIME_OBSERVER, "image_axis"), "px", "pixel of the debris, not rounded"
-    ),
-    "detected_pixel": Quantity(
-        (*_TIME_OBSERVER, "detection", "image_axis"), "px", "points that a camera shows, unlabelled"
     ),
     "target_detection": Quantity(
         _TIME_OBSERVER, "1", "which detection is the debris' own; -1 if none"
@@ -163,14 +161,10 @@ VOCABULARY: dict[str, Quantity] = {
     "chaser_velocity_h": Quantity(_TIME_VECTOR, "m/s", "its velocity as seen in the Hill frame"),
     "true_q_hc": Quantity(_TIME_QUATERNION, "1", "attitude of the camera, camera to Hill axes"),
     "known_q_hc": Quantity(_TIME_QUATERNION, "1", "the same as the estimators know it"),
-    "image_point": Quantity(
-        (*_TIME, "feature", "image_axis"), "px", "pixels of the tracked points, from the middle"
-    ),
     "measured_range": Quantity(_TIME, "m", "range along the camera's optical axis"),
     "landmark": Quantity(_TIME, "1", "which feature landmark_range belongs to, from 0"),
     "landmark_range": Quantity(_TIME, "m", "range to a feature in front"),
     "focal_px": Quantity(_RUN, "px", "focal length"),
-    "image_noise_px": Quantity(_RUN, "px", "1-sigma noise of pixels, rounding included"),
     "range_noise": Quantity(_RUN, "m", "1-sigma noise of ranges"),
     "attitude_noise": Quantity(_RUN, "rad", "1-sigma noise of known_q_hc per camera axis"),
     "start_relative_position_h": Quantity(_RUN_VECTOR, "m", "first guess of the chaser's position"),
