@@ -62,7 +62,7 @@ def load_scenario(path: Path, overrides: Sequence[str] = ()) -> LoadedScenario:
         scenario, found = validated(complete, scenario_model(), path.parent)
         problems += wrong + found
         if scenario is not None and not wrong:
-            cases[name] = Case(path.stem, name, complete.value, path.parent)
+            cases[name] = Case(path.stem, name, complete.value, path.parent.absolute())
             problems += _placed(complete, case_problems(cases[name]))
     if not problems:
         problems = _placed(document, file_problems(cases))

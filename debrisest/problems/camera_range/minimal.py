@@ -40,7 +40,6 @@ from debrisest.target.start_frame import in_start_frame
 _SCORED = np.r_[RATE_ERROR, POSITION_ERROR, VELOCITY_ERROR, LOG_INERTIA_ERROR]
 _TOLD = ("restarts", "dropped", "fit")
 """What filters tell of whole runs, for the tables."""
-_RANGE = ("measured_range",)
 _PLACES = {
     "rate_b": (RATE, RATE_ERROR),
     "relative_position_h": (POSITION, POSITION_ERROR),
@@ -91,8 +90,9 @@ class CameraRangeMinimal(ProblemPart):
     @property
     def needed(self) -> tuple[str, ...]:
         """Return the datasets that are needed: those of the range that is used."""
-        ranges = ("landmark", "landmark_range") if self.range_to == "landmark" else _RANGE
-        return (*self.needs, *ranges)
+        if self.range_to == "landmark":
+            return (*self.needs, "landmark", "landmark_range")
+        return (*self.needs, "measured_range")
 
     def measurements(self, data: Data) -> Array:
         """Return pixels point by point, then the range; or a range beside each point's pixels."""
