@@ -12,6 +12,8 @@ from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.filters.estimates import Estimates
+from debrisest.quantity import Quantity
+from debrisest.vocabulary import VOCABULARY
 
 Window = tuple[float, float]
 """From the first time (included) to the second (excluded), in seconds."""
@@ -64,6 +66,14 @@ class Part(Keys, ABC):
     """Datasets that later parts can count on."""
     extends: ClassVar[tuple[str, ...]] = ()
     """Those of them that several parts give together, each of them its share."""
+
+    declares: ClassVar[dict[str, Quantity]] = {}
+    """Datasets that nobody else declares, such as those of a plug-in; they join the vocabulary."""
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Add what the part declares to the vocabulary."""
+        VOCABULARY.update(cls.declares)
 
     @classmethod
     def can_give(cls) -> tuple[str, ...]:

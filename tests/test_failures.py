@@ -42,7 +42,7 @@ def break_runs(
 
 
 UNFORESEEN = (
-    "ArithmeticError the tank is empty; this is a mistake of debrisest or of a plug-in: "
+    "ArithmeticError: the tank is empty; this is a mistake of debrisest or of a plug-in: "
     "please report it"
 )
 STAGES = {

@@ -119,11 +119,11 @@ def test_everything_that_was_simulated_is_stored(swept: Path) -> None:
     data = store.read(swept / "persistent" / "simulate.000000.h5")
     assert data["observer"].tolist() == ["s1", "s2"]
     assert data["observer_position"].shape == (RUNS, EPOCHS, 2, 3)
-    assert data["detected_pixel"].shape == (RUNS, EPOCHS, 2, 3, 2)
+    assert data["measured_pixel"].shape == (RUNS, EPOCHS, 2, 3, 2)
     assert data["start_companion_position"].shape == (RUNS, 2, 3)
     assert set(np.unique(data["section"])) == {0.0, 1.0, 2.0}
     assert data["torque"].shape[2:] == (2, 3)
-    shown = np.isfinite(data["detected_pixel"][:, 0, :, 0, 0])
+    shown = np.isfinite(data["measured_pixel"][:, 0, :, 0, 0])
     assert shown.all()
 
 

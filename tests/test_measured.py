@@ -182,6 +182,7 @@ def test_a_guess_is_not_drawn_about_no_truth(tumbling: Path) -> None:
         ({"stage": "filter"}, "is a file of the stage filter; give a file"),
         ({"time_s": [3.0, 2.0]}, "ascending"),
         ({"start_position": [[1.0, 2.0, 3.0]]}, "start_position needs start_position_sigma"),
+        ({"measured_range": [[1.0, 2.0, 3.0]]}, "measured_range has 3 values along time_s, not 2"),
     ],
 )
 def test_a_file_that_is_wrong_is_told(tumbling: Path, content: Any, words: str) -> None:
@@ -214,8 +215,9 @@ def test_epochs_may_be_uneven(tumbling: Path, sweep: Callable, own_times: bool) 
     data = told(_simulation(tumbling), set())
     kept = np.sort(np.random.default_rng(2).permutation(30)[:20])
     times = kept if own_times else np.arange(20)
+    needed = {name: data[name] for name in ("run", "feature", "known_point_f", "point_noise")}
     shown = {"time_s": times.astype(float), "measured_point": data["measured_point"][:, kept]}
-    write_measured(tumbling / "uneven.h5", data | shown)
+    write_measured(tumbling / "uneven.h5", needed | shown)
     text = yaml.safe_load((tumbling / "measured.yaml").read_text())
     text["measured"]["file"] = "uneven.h5"
     (tumbling / "uneven.yaml").write_text(yaml.safe_dump(text, sort_keys=False))

@@ -140,5 +140,5 @@ def test_a_filter_that_needs_another_model_is_told(
     config.write_text(yaml.safe_dump(scenario | {"estimators": estimators}, sort_keys=False))
     result = cli("validate", config)
     assert result.exit_code == 2
-    assert "replay needs replay_model" in result.stderr
-    assert "problem stereo_pose" in result.stderr
+    assert "replay takes a replay model" in result.stderr
+    assert "problems that fit replay: tumbling_points, stereo_pose" in result.stderr

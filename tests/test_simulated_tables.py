@@ -11,8 +11,9 @@ import pytest
 
 from debrisest.catalog import CATALOG
 from debrisest.draws import Stream
+from debrisest.quantity import Quantity
 from debrisest.roles import Positive, RecoveryPart, SimulationPart
-from debrisest.vocabulary import VOCABULARY, Quantity
+from debrisest.vocabulary import VOCABULARY
 
 EPOCHS, RUNS = 10, 30
 

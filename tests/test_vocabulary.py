@@ -3,12 +3,15 @@
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 import h5py
 import numpy as np
 import pytest
 
+from debrisest.quantity import RUN, TIME, Quantity
 from debrisest.results import store
+from debrisest.roles import SimulationPart
 from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, table_scale
 
 SCALES = {
@@ -90,6 +93,25 @@ def test_truth_and_measurements_have_the_declared_sizes(reference: Path) -> None
     assert data["time_s"].tolist() == list(range(60))
     assert data["run"].tolist() == [0, 1, 2]
     assert data["feature"].tolist() == ["a", "b", "c", "d"]
+
+
+def test_a_sensor_in_a_single_file_declares_its_own_dataset(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(VOCABULARY, "sun_angle", Quantity(RUN, "", "to be replaced"))
+
+    class SunSensor(SimulationPart):
+        declares = {"sun_angle": Quantity(TIME, "rad", "angle from the Sun", "deg")}
+        measures = ("sun_angle",)
+        kind: Literal["sun_sensor"]
+
+    assert SunSensor.can_give() == ("sun_angle",)
+    data = {"run": np.zeros(1), "time_s": np.arange(3.0), "sun_angle": np.ones((1, 3))}
+    store.write(tmp_path / "sun.h5", data, {})
+    assert store.read(tmp_path / "sun.h5")["sun_angle"].tolist() == [[1, 1, 1]]
+    with h5py.File(tmp_path / "sun.h5") as file:
+        assert file["sun_angle"].attrs["units"] == "rad"
+    assert table_scale("sun_angle") == pytest.approx(180 / np.pi)
 
 
 def test_names_can_be_read_by_every_program() -> None:

@@ -75,8 +75,8 @@ def test_at_time_zero_the_principal_axes_are_the_cameras(swept: Path) -> None:
 
 def test_cases_differ_as_they_are_told_to(swept: Path) -> None:
     nominal, occluded = (_read(swept, case, "simulate") for case in ("nominal", "occluded"))
-    assert np.isfinite(nominal["image_point"]).all()
-    hidden = np.isnan(occluded["image_point"][..., 0]).mean()
+    assert np.isfinite(nominal["measured_pixel"][:, :, 0]).all()
+    hidden = np.isnan(occluded["measured_pixel"][:, :, 0][..., 0]).mean()
     assert 0.1 < hidden < 0.5
     surface = _read(swept, "surface-range", "simulate")
     distance = np.linalg.norm(surface["chaser_position_h"], axis=-1)

@@ -6,8 +6,9 @@ from types import ModuleType
 from typing import Any, get_args
 
 from debrisest.catalog import CATALOG, kind_of
+from debrisest.quantity import Quantity
 from debrisest.roles import Part, SimulationPart
-from debrisest.vocabulary import VOCABULARY, Quantity
+from debrisest.vocabulary import VOCABULARY
 
 
 def parts_of(module: ModuleType) -> list[Any]:
@@ -46,7 +47,7 @@ def problems_in(module: ModuleType) -> Iterator[str]:
         if name in VOCABULARY:
             yield f"{module.__file__}: QUANTITIES: {name} exists already; choose another name"
         elif not isinstance(quantity, Quantity):
-            yield f"{module.__file__}: QUANTITIES: {name} must be a debrisest.vocabulary.Quantity"
+            yield f"{module.__file__}: QUANTITIES: {name} must be a debrisest.quantity.Quantity"
 
 
 def _wrong(part: Any, before: Sequence[Any]) -> str:

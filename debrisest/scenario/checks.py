@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from debrisest.arrays import Data
 from debrisest.assessment.statistics import window_mask
 from debrisest.clock import Clock
@@ -71,7 +73,8 @@ def _parts_that_refuse(case: Case) -> Found:
     if not any(part.tried for part in parts.values()):
         return
     clock, draws = Clock(case.clock.times[:2]), Draws(case.scenario.seed, "", [0])
-    data: Data = {"time_s": clock.times}
+    measured = case.measured_runs(np.array([0])) if case.source else {}
+    data: Data = {**measured, "time_s": clock.times}
     for path, part in parts.items():
         try:
             data |= part.simulate_named(path.partition(".")[2], data, clock, draws)

@@ -84,10 +84,13 @@ def _filter_that_does_not_fit(
     if algorithm.takes != problem.gives_model:
         filters = [part for part in CATALOG["filter"] if issubclass(part, FilterPart)]
         fitting = [kind_of(part) for part in filters if part.takes == problem.gives_model]
+        problems = [part for part in CATALOG["problem"] if issubclass(part, ProblemPart)]
+        others = [kind_of(part) for part in problems if part.model_kind == algorithm.takes]
         yield (
             path,
             f"{kind} takes a {_words(algorithm.takes)}, but {needs} is a "
-            f"{_words(problem.gives_model)} here; filters that fit: {', '.join(fitting)}",
+            f"{_words(problem.gives_model)} here; filters that fit: {', '.join(fitting)}"
+            + (f"; problems that fit {kind}: {', '.join(others)}" if others else ""),
         )
     elif algorithm.uses_truth:
         missing = [name for name in problem.truth_needed if name not in given]

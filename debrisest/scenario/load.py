@@ -66,7 +66,7 @@ def load_scenario(
         scenario, found = validated(complete, scenario_model(), path.parent)
         problems += wrong + found
         if scenario is not None and not wrong:
-            cases[name] = Case(path.stem, name, complete.value, path.parent, loaded)
+            cases[name] = Case(path.stem, name, complete.value, path.parent.absolute(), loaded)
             problems += _placed(complete, case_problems(cases[name]))
     if not problems:
         problems = _placed(document, file_problems(cases))

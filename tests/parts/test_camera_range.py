@@ -61,17 +61,19 @@ def test_pixels_are_those_of_points_placed_in_inertial_space() -> None:
     points = quaternion.rotate(data["true_q_ib"][..., None, :], data["true_point_b"][:, None])
     to_camera = np.swapaxes(frame @ quaternion.to_matrix(data["true_q_hc"]), -1, -2)
     sight = (points - chaser[..., None, :]) @ np.swapaxes(to_camera, -1, -2)
-    assert np.allclose(data["image_point"], 1000 * sight[..., :2] / sight[..., 2:], atol=1e-6)
+    assert np.allclose(
+        data["measured_pixel"][:, :, 0], 1000 * sight[..., :2] / sight[..., 2:], atol=1e-6
+    )
     assert np.allclose((to_camera @ chaser[..., None])[..., :2, 0], 0, atol=1e-9)
 
 
 def test_noise_is_what_it_is_said_to_be() -> None:
     exact = _seen({"pixel_noise_px": 1e-9, "whole_pixels": False, "range_noise_m": 1e-9}, 20)
     noisy = _seen({"attitude_noise_deg": 0.02}, 20)
-    error = noisy["image_point"] - exact["image_point"]
-    assert error.std() == pytest.approx(noisy["image_noise_px"][0], rel=0.03)
-    assert noisy["image_noise_px"][0] == pytest.approx(np.sqrt(1 + 1 / 12))
-    assert (noisy["image_point"] == np.round(noisy["image_point"])).all()
+    error = noisy["measured_pixel"][:, :, 0] - exact["measured_pixel"][:, :, 0]
+    assert error.std() == pytest.approx(noisy["pixel_noise"][0], rel=0.03)
+    assert noisy["pixel_noise"][0] == pytest.approx(np.sqrt(1 + 1 / 12))
+    assert (noisy["measured_pixel"][:, :, 0] == np.round(noisy["measured_pixel"][:, :, 0])).all()
     spread = (noisy["measured_range"] - exact["measured_range"]).std()
     assert spread == pytest.approx(noisy["range_noise"][0], rel=0.1)
     turn = quaternion.angle_between(noisy["true_q_hc"], noisy["known_q_hc"])
@@ -88,8 +90,8 @@ def test_a_bias_is_constant_and_differs_from_run_to_run() -> None:
 
 
 def test_lost_tracks_return_and_false_matches_are_anywhere() -> None:
-    exact = _seen({"pixel_noise_px": 1e-9, "whole_pixels": False}, 10)["image_point"]
-    data = _seen({"missed_share": 0.2, "false_match_share": 0.1}, 10)["image_point"]
+    exact = _seen({"pixel_noise_px": 1e-9, "whole_pixels": False}, 10)["measured_pixel"][:, :, 0]
+    data = _seen({"missing_share": 0.2, "false_match_share": 0.1}, 10)["measured_pixel"][:, :, 0]
     seen = np.isfinite(data[..., 0])
     assert seen.mean() == pytest.approx(0.8, abs=0.02)
     assert (np.diff(seen.astype(int), axis=1) == 1).any()
@@ -101,7 +103,7 @@ def test_lost_tracks_return_and_false_matches_are_anywhere() -> None:
 @pytest.mark.parametrize("visibility", ["box", "back_face"])
 def test_hidden_points_have_no_pixels(visibility: str) -> None:
     keys: dict[str, Any] = {"visibility": visibility, "half_sides_m": [1.0, 0.75, 0.5]}
-    seen = np.isfinite(_seen(keys)["image_point"]).all(-1)
+    seen = np.isfinite(_seen(keys)["measured_pixel"][:, :, 0]).all(-1)
     assert 0.2 < seen.mean() < 0.95
     assert seen.sum(-1).max() == (7 if visibility == "box" else 4)
 
@@ -125,9 +127,9 @@ def test_a_range_to_the_surface_is_nearer_and_to_a_landmark_that_landmarks() -> 
 
 
 def test_the_range_finder_is_held_on_a_point_that_the_camera_sees() -> None:
-    keys = {"visibility": "box", "half_sides_m": [1.0, 0.75, 0.5], "missed_share": 0.6}
+    keys = {"visibility": "box", "half_sides_m": [1.0, 0.75, 0.5], "missing_share": 0.6}
     data = _seen(keys | {"range_noise_m": 1e-9}, 6)
-    seen = np.isfinite(data["image_point"]).all(-1)
+    seen = np.isfinite(data["measured_pixel"][:, :, 0]).all(-1)
     ranged = np.isfinite(data["landmark_range"])
     assert 0.02 < 1 - ranged.mean() < 0.9
     assert np.array_equal(ranged, seen.any(-1))
@@ -152,7 +154,7 @@ def test_the_guess_lies_on_the_measured_range_and_on_a_plane() -> None:
     assert np.allclose(data["start_point_c"][..., 2], depth)
     assert np.allclose(data["start_point_b"][..., 2], 0)
     shown = 1000 * data["start_point_c"][..., :2] / data["start_point_c"][..., 2:]
-    assert np.allclose(shown, data["image_point"][:, 0])
+    assert np.allclose(shown, data["measured_pixel"][:, :, 0][:, 0])
     assert not data["start_relative_velocity_h"].any()
     spread = data["start_rate_b"].std(axis=0)
     assert np.allclose(spread, np.radians(0.3), rtol=0.15)

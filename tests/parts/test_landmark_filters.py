@@ -174,9 +174,11 @@ def test_what_cannot_be_measured_is_refused_in_words(data) -> None:
     with pytest.raises(ValueError, match="range at 0 s is zero or negative"):
         problem(range_to="landmark").measurements(held)
     with pytest.raises(ValueError, match="at least 4 points, 3 were tracked"):
-        problem().measurements(data | {"image_point": data["image_point"][:, :, :3]})
+        problem().measurements(data | {"measured_pixel": data["measured_pixel"][..., :3, :]})
     with pytest.raises(ValueError, match="no image shows any point"):
-        problem().measurements(data | {"image_point": np.full_like(data["image_point"], np.nan)})
+        problem().measurements(
+            data | {"measured_pixel": np.full_like(data["measured_pixel"], np.nan)}
+        )
 
 
 def test_nothing_is_told_of_ratios_that_were_known_better_before(data) -> None:
@@ -199,9 +201,9 @@ def test_a_run_that_does_not_fit_says_so(data) -> None:
     surface = data | {"measured_range": data["measured_range"] - 1.0}
     settings = {"windows_s": [50, 100, 150], "spacing_s": [5, 5, 5], "extended_s": []}
     batch = LandmarkBatch(kind="landmark_batch", restarts=0, mirrored=False, **settings)
-    wild = surface["image_point"].copy()
+    wild = surface["measured_pixel"].copy()
     wild[:, 40:] += 4.0 * np.random.default_rng(0).normal(size=wild[:, 40:].shape)
-    status = run(surface | {"image_point": wild}, problem(), batch).status
+    status = run(surface | {"measured_pixel": wild}, problem(), batch).status
     assert all("finished, but" in words or "rejected" in words for words in status)
 
 
@@ -238,9 +240,9 @@ def test_the_usual_extension_is_longer_than_the_windows() -> None:
 
 
 def test_a_run_with_too_few_landmarks_says_so(data) -> None:
-    hidden = data["image_point"].copy()
-    hidden[:, :, 3:] = np.nan
+    hidden = data["measured_pixel"].copy()
+    hidden[..., 3:, :] = np.nan
     settings = {"windows_s": [50, 100, 150], "spacing_s": [5, 5, 5], "extended_s": []}
     batch = LandmarkBatch(kind="landmark_batch", **settings)
-    status = run(data | {"image_point": hidden}, problem(), batch).status
+    status = run(data | {"measured_pixel": hidden}, problem(), batch).status
     assert all("too few landmarks" in words for words in status)

@@ -22,7 +22,7 @@ def scene(duration: int, runs: int) -> dict[str, np.ndarray]:
     own = [x.swapaxes(0, 1) for x in kepler.propagate(*start, times)]
     names = ("orbit_position", "orbit_velocity", "observer_position", "observer_velocity")
     data = {name: np.stack([x] * runs) for name, x in zip(names, (*debris, *own))}
-    image = {"camera_scale": np.full(runs, 335.0), "image_half_size": [[240.0, 180.0]] * runs}
+    image = {"focal_px": np.full(runs, 335.0), "image_half_size": [[240.0, 180.0]] * runs}
     return {"time_s": times, **data, **{name: np.array(x) for name, x in image.items()}}
 
 
@@ -92,7 +92,7 @@ def test_printed_axes_are_a_verdict() -> None:
 
 def test_debris_outside_every_image_at_the_start_is_refused() -> None:
     data = scene(3, 2)
-    data["camera_scale"][:] = 1e4
+    data["focal_px"][:] = 1e4
     with pytest.raises(ValueError, match="no camera sees the debris at the start"):
         simulate(data, [0, 1])
     assert PointingControl.tried

@@ -24,7 +24,12 @@ TINY, STEP = 1e-14, 0.01
 
 
 def camera(**keys) -> StereoCamera:
-    given = {"pixel_noise": TINY, "flow_noise_1_s": TINY, "disparity_noise": TINY, "from_s": 0.0}
+    given = {
+        "pixel_noise_px": TINY,
+        "flow_noise_px_s": TINY,
+        "disparity_noise_px": TINY,
+        "from_s": 0.0,
+    }
     return StereoCamera(kind="stereo_camera", **({"baseline_m": 1.0} | given | keys))
 
 
@@ -59,7 +64,7 @@ def test_flow_is_the_derivative_of_the_pixels(simulated: Callable) -> None:
 
 
 def test_noise_is_as_large_as_it_is_said_to_be(simulated: Callable) -> None:
-    noises = {"pixel_noise": 1e-3, "flow_noise_1_s": 2e-3, "disparity_noise": 3e-3}
+    noises = {"pixel_noise_px": 1e-3, "flow_noise_px_s": 2e-3, "disparity_noise_px": 3e-3}
     noisy, clean = simulated(camera(**noises), runs=20), simulated(camera(), runs=20)
     for name, noise, count in zip(("pixel", "flow", "disparity"), noises.values(), (4, 4, 1)):
         gap = noisy[f"measured_{name}"] - clean[f"measured_{name}"]
@@ -68,12 +73,12 @@ def test_noise_is_as_large_as_it_is_said_to_be(simulated: Callable) -> None:
 
 
 def test_what_is_switched_off_changes_nothing_else(simulated: Callable) -> None:
-    whole = simulated(camera(pixel_noise=1e-3))
-    part = simulated(camera(pixel_noise=1e-3, flow_noise_1_s=None, disparity_noise=None))
+    whole = simulated(camera(pixel_noise_px=1e-3))
+    part = simulated(camera(pixel_noise_px=1e-3, flow_noise_px_s=None, disparity_noise_px=None))
     assert np.array_equal(whole["measured_pixel"], part["measured_pixel"])
     assert not {"measured_flow", "flow_noise", "measured_disparity"} & part.keys()
     with pytest.raises(ValidationError, match="measure nothing"):
-        camera(pixel_noise=None, flow_noise_1_s=None, disparity_noise=None)
+        camera(pixel_noise_px=None, flow_noise_px_s=None, disparity_noise_px=None)
 
 
 def test_missing_features_and_the_time_before_the_first(simulated: Callable) -> None:
@@ -104,7 +109,7 @@ def inside(point, cube):
 def test_occlusion_hides_what_lies_behind_the_body(simulated: Callable) -> None:
     """A feature of a box is hidden where the way to either camera begins inside the box."""
     turning = {"rate": [30.0, -20.0, 10.0], "runs": 20, "first": 3}
-    parts = Box(), camera(occlusion=True, baseline_m=4.0)
+    parts = Box(), camera(visibility="back_face", baseline_m=4.0)
     data = simulated(*parts, **turning)
     hidden = np.isnan(data["measured_disparity"])
     point, expected = data["true_point_b"][:, None], np.zeros_like(hidden)
@@ -127,8 +132,8 @@ def test_missing_features_come_on_top_of_hidden_ones(simulated: Callable) -> Non
     def hidden(**keys):
         return np.isnan(simulated(camera(**keys), runs=10)["measured_disparity"])
 
-    both = hidden(occlusion=True, missing_per_frame=2)
-    assert np.array_equal(both, hidden(occlusion=True) | hidden(missing_per_frame=2))
+    both = hidden(visibility="back_face", missing_per_frame=2)
+    assert np.array_equal(both, hidden(visibility="back_face") | hidden(missing_per_frame=2))
 
 
 class Bare(SimulationPart):
@@ -162,7 +167,7 @@ def test_occlusion_needs_normals(occlusion: bool, bare: bool) -> None:
         target=Bare() if bare else drawn,
         orbit=KeplerOrbit(kind="kepler", semi_major_axis_km=7170.0),
         motion=motion,
-        sensors={"cameras": camera(occlusion=occlusion)},
+        sensors={"cameras": camera(visibility="back_face" if occlusion else "all")},
         estimators={},
     )
     case = SimpleNamespace(scenario=scenario, source=None, measured={}, estimators=[])
@@ -175,8 +180,8 @@ def test_occlusion_needs_normals(occlusion: bool, bare: bool) -> None:
 
 
 def test_outliers_come_with_their_share_and_size(simulated: Callable) -> None:
-    hit = simulated(camera(pixel_noise=1e-5, outlier_share=0.02), runs=40)
-    clean = simulated(camera(pixel_noise=1e-5), runs=40)
+    hit = simulated(camera(pixel_noise_px=1e-5, outlier_share=0.02), runs=40)
+    clean = simulated(camera(pixel_noise_px=1e-5), runs=40)
     gap = hit["measured_pixel"] - clean["measured_pixel"]
     struck = gap != 0
     assert struck.mean() == pytest.approx(0.02, abs=5 * np.sqrt(0.02 / struck.size))

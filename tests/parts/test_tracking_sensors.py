@@ -52,7 +52,7 @@ def scene() -> Callable[..., Data]:
         for name, node in (("one", 10.0), ("two", 7.0)):
             own = Satellite(kind="satellite", **OWN | {"raan_deg": node})
             data |= own.simulate_named(name, data, CLOCK, drawn)
-        camera = PinholeCamera(kind="pinhole_camera", scale_px=335.0, half_size_px=HALF.tolist())
+        camera = PinholeCamera(kind="pinhole_camera", focal_px=335.0, half_size_px=HALF.tolist())
         data |= camera.simulate(data, CLOCK, drawn)
         away = data["orbit_position"][0, :, None] - data["observer_position"][0]
         turns, aside = [], Rotation.from_rotvec([0.05, 0.1, 0.0])
@@ -169,17 +169,17 @@ def own_points(found: Data) -> np.ndarray:
     """The debris' own detections, NaN where missed."""
     place = found["target_detection"].astype(int)
     chosen = np.take_along_axis(
-        found["detected_pixel"], np.maximum(place, 0)[..., None, None], axis=-2
+        found["measured_pixel"], np.maximum(place, 0)[..., None, None], axis=-2
     )[..., 0, :]
     return np.where(place[..., None] >= 0, chosen, np.nan)
 
 
 def test_own_points_are_rounded_and_have_the_noise_of_both(scene) -> None:
     data = scene()
-    found = detected(data, 30, noise_px=1.0, clutter={"count": 2, "half_width_px": 10.0})
-    assert found["detected_pixel"].shape == (30, 60, 2, 3, 2)
-    assert np.isfinite(found["detected_pixel"]).all()
-    assert (found["detected_pixel"] == np.round(found["detected_pixel"])).all()
+    found = detected(data, 30, pixel_noise_px=1.0, clutter={"count": 2, "half_width_px": 10.0})
+    assert found["measured_pixel"].shape == (30, 60, 2, 3, 2)
+    assert np.isfinite(found["measured_pixel"]).all()
+    assert (found["measured_pixel"] == np.round(found["measured_pixel"])).all()
     error = own_points(found) - data["true_pixel"]
     assert error.var() == pytest.approx(1 + 1 / 12, rel=0.07)
     assert abs(error.mean()) < 0.06
@@ -194,9 +194,9 @@ def test_every_place_in_the_list_is_as_likely(scene) -> None:
 
 def test_clutter_is_spread_evenly_over_the_square(scene) -> None:
     data = scene()
-    found = detected(data, 30, rounding=False, clutter={"count": 1, "half_width_px": 10.0})
+    found = detected(data, 30, whole_pixels=False, clutter={"count": 1, "half_width_px": 10.0})
     place = 1 - found["target_detection"].astype(int)
-    clutter = np.take_along_axis(found["detected_pixel"], place[..., None, None], -2)[..., 0, :]
+    clutter = np.take_along_axis(found["measured_pixel"], place[..., None, None], -2)[..., 0, :]
     offset = clutter - data["true_pixel"]
     assert 9.9 < np.abs(offset).max() < 10.0
     assert offset.std() == pytest.approx(10 / np.sqrt(3), rel=0.03)
@@ -204,11 +204,11 @@ def test_clutter_is_spread_evenly_over_the_square(scene) -> None:
 
 
 def test_a_missed_detection_leaves_no_point(scene) -> None:
-    found = detected(scene(), 30, detection_probability=0.7)
+    found = detected(scene(), 30, missing_share=0.3)
     missed = found["target_detection"] == -1
     assert missed.mean() == pytest.approx(0.3, abs=0.04)
-    assert np.isnan(found["detected_pixel"][missed]).all()
-    assert np.isfinite(found["detected_pixel"][~missed]).all()
+    assert np.isnan(found["measured_pixel"][missed]).all()
+    assert np.isfinite(found["measured_pixel"][~missed]).all()
 
 
 def test_what_is_out_of_view_shows_nothing_and_images_end_at_their_border(scene) -> None:
@@ -216,7 +216,7 @@ def test_what_is_out_of_view_shows_nothing_and_images_end_at_their_border(scene)
     data["true_pixel"] = data["true_pixel"].copy()
     data["true_pixel"][:, :30] = np.nan
     data["true_pixel"][:, 30:] = [239.0, -179.0]
-    found = detected(data, 30, clutter={"count": 4, "half_width_px": 20.0})["detected_pixel"]
+    found = detected(data, 30, clutter={"count": 4, "half_width_px": 20.0})["measured_pixel"]
     assert np.isnan(found[:, :30]).all()
     seen = found[:, 30:]
     assert (np.abs(seen[np.isfinite(seen).all(-1)]) <= HALF).all()
@@ -229,14 +229,14 @@ def test_what_is_out_of_view_shows_nothing_and_images_end_at_their_border(scene)
 def test_companions_fly_beside_the_debris_for_good(scene) -> None:
     data, runs = scene(200), 200
     keys = {"count": 2, "spread_km": 10.0, "relative_speed_m_s": 10.0}
-    found = detected(data, runs, noise_px=0.0, rounding=False, companions=keys)
+    found = detected(data, runs, pixel_noise_px=0.0, whole_pixels=False, companions=keys)
     guess = found["start_companion_position"] - data["orbit_position"][:, 0, None]
     assert guess.shape == (runs, 2, 3)
     assert guess.std() == pytest.approx(np.sqrt(2) * 1e4, rel=0.12)
     assert (found["start_companion_position_sigma"] == 1e4).all()
     speed = found["start_companion_velocity"] - data["orbit_velocity"][:, 0, None]
     assert speed.std() == pytest.approx(np.hypot(10.0, 100.0), rel=0.12)
-    points = found["detected_pixel"]
+    points = found["measured_pixel"]
     distance = np.linalg.norm(points - data["true_pixel"][..., None, :], axis=-1)
     away = np.sort(distance, axis=-1)
     assert away[..., 0].max() < 1e-9
@@ -256,9 +256,9 @@ def test_companions_fall_as_the_debris_does(scene, noise: float) -> None:
     turn = Rotation.from_quat(data["true_q_ic"].reshape(-1, 4), scalar_first=True)
     point = turn.inv().apply(away.reshape(-1, 3)).reshape(away.shape)
     data["true_pixel"] = 335.0 * point[..., :2] / point[..., 2:]
-    keys = {"noise_px": 0.0, "rounding": False}
+    keys = {"pixel_noise_px": 0.0, "whole_pixels": False}
     found = detected(data, 2, **keys, companions={"count": 1, "j2": True, **near})
-    apart = np.ptp(found["detected_pixel"], axis=-2)
+    apart = np.ptp(found["measured_pixel"], axis=-2)
     assert np.max(apart[:, :2] if noise else apart) < 1e-6 + 1e-4 * (noise > 0)
 
 
@@ -273,11 +273,11 @@ def test_companions_under_another_gravity_are_refused(scene, j2: bool) -> None:
 
 
 def test_the_points_of_a_run_do_not_depend_on_its_companions(scene) -> None:
-    keys = {"clutter": {"count": 2, "half_width_px": 10.0}, "detection_probability": 0.9}
+    keys = {"clutter": {"count": 2, "half_width_px": 10.0}, "missing_share": 0.1}
     many = detected(scene(5), 5, **keys)
     part = Detections(kind="detections", **keys)
     alone = part.simulate(scene(1), CLOCK, Draws(1, "case", [3]))
-    np.testing.assert_array_equal(many["detected_pixel"][3], alone["detected_pixel"][0])
+    np.testing.assert_array_equal(many["measured_pixel"][3], alone["measured_pixel"][0])
     np.testing.assert_array_equal(many["target_detection"][3], alone["target_detection"][0])
 
 
@@ -298,9 +298,9 @@ def test_unlabelled_points_keep_who_they_are() -> None:
 @pytest.mark.parametrize(
     ("keys", "said"),
     [
-        ({"detection_probability": 0.0}, "greater than 0"),
-        ({"detection_probability": 1.5}, "less than or equal to 1"),
-        ({"noise_px": -1.0}, "greater than or equal to 0"),
+        ({"missing_share": -0.5}, "greater than or equal to 0"),
+        ({"missing_share": 1.0}, "less than 1"),
+        ({"pixel_noise_px": -1.0}, "greater than or equal to 0"),
         ({"clutter": {"count": 0, "half_width_px": 10.0}}, "greater than or equal to 1"),
     ],
 )

@@ -9,8 +9,8 @@ from debrisest.arrays import Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
+from debrisest.quantity import Quantity
 from debrisest.roles import Positive, SimulationPart
-from debrisest.vocabulary import Quantity
 
 QUANTITIES = {"fading": Quantity(("run", "time_s"), "1", "share of the features not seen", "1")}
 

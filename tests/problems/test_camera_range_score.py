@@ -29,7 +29,7 @@ def _truth(seed: int = 0) -> tuple[Data, InStartFrame]:
         "true_q_hc": quaternion.normalize(rng.standard_normal((RUNS, EPOCHS, 4))),
         "chaser_position_h": rng.standard_normal((RUNS, EPOCHS, 3)),
         "chaser_velocity_h": rng.standard_normal((RUNS, EPOCHS, 3)),
-        "image_point": np.zeros((RUNS, EPOCHS, POINTS, 2)),
+        "measured_pixel": np.zeros((RUNS, EPOCHS, 1, POINTS, 2)),
         "covariance_time_s": times[-1:],
         "covariance": np.tile(1e-4 * np.eye(14), (RUNS, 1, 1, 1)),
     }
@@ -122,8 +122,8 @@ def test_a_tensor_is_scored_with_its_scale_and_two_sets_of_points_with_their_dis
 
 def test_points_hardly_ever_seen_are_not_scored() -> None:
     data, truth = _truth(4)
-    data["image_point"] = np.zeros((RUNS, EPOCHS, POINTS, 2))
-    data["image_point"][:, :, 2] = np.nan
+    data["measured_pixel"] = np.zeros((RUNS, EPOCHS, 1, POINTS, 2))
+    data["measured_pixel"][..., 2, :] = np.nan
     estimate = _estimate(data, truth, np.eye(3))
     estimate["point_b"][:, :, 2] += 1.0
     estimate["point_b"][:, :3, 4] = np.nan
@@ -154,11 +154,11 @@ def test_measurements_without_a_truth_are_not_scored_and_wrong_ones_are_refused(
     with pytest.raises(ValueError, match="range at 15 s is zero"):
         require_measurable(data | {"landmark_range": ranges}, "landmark_range")
     with pytest.raises(ValueError, match="at least 4 points, 3 were tracked"):
-        require_measurable({"image_point": np.zeros((1, 2, 3, 2))})
-    blind = data["image_point"].copy()
+        require_measurable({"measured_pixel": np.zeros((1, 2, 1, 3, 2))})
+    blind = data["measured_pixel"].copy()
     blind[1] = np.nan
     with pytest.raises(ValueError, match="no image shows any point"):
-        require_measurable(data | {"image_point": blind, "measured_range": ranges})
+        require_measurable(data | {"measured_pixel": blind, "measured_range": ranges})
 
 
 def test_directions_as_unknown_as_before_are_unobservable() -> None:

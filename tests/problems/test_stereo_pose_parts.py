@@ -13,6 +13,7 @@ from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditiv
 from debrisest.problems.stereo_pose.score import plain_covariance, scores
 
 POINTS, EPOCHS = 5, 4
+FOCAL = 800.0
 CLOCK = Clock.regular(float(EPOCHS), 1.0)
 
 
@@ -43,10 +44,11 @@ def data(states):
     return {
         "time_s": CLOCK.times,
         "baseline": np.full(2, 2.0),
-        "measured_pixel": pixel,
-        "pixel_noise": np.full(2, 1e-5),
-        "measured_disparity": -2.0 / y,
-        "disparity_noise": np.full(2, 3e-5),
+        "focal_px": np.full(2, FOCAL),
+        "measured_pixel": FOCAL * pixel,
+        "pixel_noise": np.full(2, FOCAL * 1e-5),
+        "measured_disparity": -2.0 * FOCAL / y,
+        "disparity_noise": np.full(2, FOCAL * 3e-5),
         "measured_angular_acceleration": np.zeros((2, EPOCHS, 3)),
         "angular_acceleration_noise": np.full(2, 1e-6),
         **truth,
@@ -72,7 +74,7 @@ def test_rows_come_in_the_order_of_the_model(data, states, measures):
     noise = of_data.noise_of(data, known)
     assert noise.shape == expected.shape[-1:]
     per_point = [1e-5] * 4 + [3e-5] * known.shown.disparity
-    assert noise[:count].tolist() == per_point * POINTS
+    assert noise[:count] == pytest.approx(per_point * POINTS, rel=1e-15)
     assert set(noise[count:]) <= {1e-6}
 
 

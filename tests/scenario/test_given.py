@@ -58,6 +58,13 @@ def test_what_is_wrong_is_told(quantities, words: str) -> None:
         given(quantities=quantities)
 
 
+def test_a_guess_of_other_features_is_told() -> None:
+    part = given(quantities={"point_b": {"value": [[1.0, 2.0, 3.0]], "sigma": 1.0}})
+    data = {"feature": np.array(["a", "b"])}
+    with pytest.raises(ValueError, match="point_b is given for 1 features, but there are 2"):
+        part.simulate(data, Clock.regular(2, 1), Draws(0, "", [0]))
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

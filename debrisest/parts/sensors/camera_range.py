@@ -38,8 +38,8 @@ class CameraRange(SimulationPart):
         *("true_q_ib", "true_point_b"),
     )
     truths = ("true_q_hc",)
-    knows = ("known_q_hc", "focal_px", "image_noise_px", "range_noise", "attitude_noise")
-    measures = ("image_point", "measured_range", "landmark", "landmark_range")
+    knows = ("known_q_hc", "focal_px", "pixel_noise", "range_noise", "attitude_noise")
+    measures = ("measured_pixel", "measured_range", "landmark", "landmark_range")
     tried = True
     version = 2
     kind: Literal["camera_range"]
@@ -50,7 +50,7 @@ class CameraRange(SimulationPart):
     range_to: Literal["centre", "surface"] = "centre"
     half_sides_m: HalfSides | None = Field(None, description="of the body, a box")
     visibility: Literal["all", "back_face", "box"] = "all"
-    missed_share: Share = 0.0
+    missing_share: Share = 0.0
     false_match_share: Share = 0.0
     false_match_px: Positive = 200.0
     attitude_noise_deg: NonNegative = 0.0
@@ -68,7 +68,7 @@ class CameraRange(SimulationPart):
         return (*self.needs, "true_normal_b") if self.visibility == "back_face" else self.needs
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
-        """Return pixels (run, time, feature, 2), ranges (run, time) and the camera's attitude."""
+        """Return pixels (run, time, 1, feature, 2), ranges (run, time), the camera's attitude."""
         q_hc, points_c = self._points_in_front(data)
         noise = draws.normal(Stream.MEASUREMENT_NOISE, (*points_c.shape[1:-1], 2))
         pixels = pinhole.project(points_c, self.focal_px) + self.pixel_noise_px * noise
@@ -77,11 +77,11 @@ class CameraRange(SimulationPart):
         pixels[~seen] = np.nan
         runs = len(draws.runs)
         return {
-            "image_point": np.round(pixels) if self.whole_pixels else pixels,
+            "measured_pixel": (np.round(pixels) if self.whole_pixels else pixels)[:, :, None],
             **self._ranges(data, points_c, seen, draws),
             **self._attitude(q_hc, draws),
             "focal_px": np.full(runs, self.focal_px),
-            "image_noise_px": np.full(runs, self._image_noise()),
+            "pixel_noise": np.full(runs, self._image_noise()),
             "range_noise": np.full(runs, self.range_noise_m),
             "attitude_noise": np.full(runs, np.radians(self.attitude_noise_deg)),
         }
@@ -109,7 +109,7 @@ class CameraRange(SimulationPart):
         return np.where(drawn[..., :1] < self.false_match_share, anywhere, pixels)
 
     def _seen(self, data: Data, shape: tuple[int, ...], draws: Draws) -> BoolArray:
-        found = draws.uniform(Stream.CLUTTER, shape) >= self.missed_share
+        found = draws.uniform(Stream.CLUTTER, shape) >= self.missing_share
         if self.visibility == "all":
             return found
         points, q_hb = data["true_point_b"][:, None], attitude_in_hill(data)

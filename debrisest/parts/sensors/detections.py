@@ -55,16 +55,16 @@ class Detections(SimulationPart):
 
     needs = (
         *("orbit_position", "orbit_velocity", "observer_position", "true_q_ic"),
-        *("true_pixel", "camera_scale", "image_half_size"),
+        *("true_pixel", "focal_px", "image_half_size"),
     )
     truths = ("target_detection",)
     knows = ("start_companion_position", "start_companion_velocity")
-    measures = ("detected_pixel",)
+    measures = ("measured_pixel",)
     tried = True
     kind: Literal["detections"]
-    noise_px: NonNegative = 1.0
-    rounding: bool = True
-    detection_probability: Annotated[float, Field(gt=0, le=1)] = 1.0
+    pixel_noise_px: NonNegative = 1.0
+    whole_pixels: bool = True
+    missing_share: Annotated[float, Field(ge=0, lt=1)] = 0.0
     clutter: Clutter | None = None
     companions: Companions | None = None
 
@@ -84,15 +84,15 @@ class Detections(SimulationPart):
             shown = np.concatenate([shown, others], axis=-2)
         noise = draws.normal(Stream.MEASUREMENT_NOISE, shown.shape[1:])
         found = draws.uniform(Stream.MEASUREMENT_NOISE, shown.shape[1:-1])
-        missed = found >= self.detection_probability
-        points = np.where(missed[..., None], np.nan, shown + self.noise_px * noise)
+        missed = found >= 1 - self.missing_share
+        points = np.where(missed[..., None], np.nan, shown + self.pixel_noise_px * noise)
         points = self._with_clutter(points, data["true_pixel"], draws)
-        points = np.round(points) if self.rounding else points
+        points = np.round(points) if self.whole_pixels else points
         inside = in_image(points, data["image_half_size"][:, None, None, None])
         points = np.where(inside[..., None], points, np.nan)
         rank = draws.uniform(Stream.CLUTTER, points.shape[1:-1])
         detected, own = unlabelled(points, rank)
-        return result | {"detected_pixel": detected, "target_detection": own.astype(np.float64)}
+        return result | {"measured_pixel": detected, "target_detection": own.astype(np.float64)}
 
     def _with_clutter(self, points: Array, pixel: Array, draws: Draws) -> Array:
         if self.clutter is None:
@@ -138,6 +138,6 @@ def _shown(data: Data, position: Array) -> Array:
     """Pixels (run, time, observer, piece, 2) of (run, piece, time, 3), NaN out of view."""
     away = np.swapaxes(position, 1, 2)[:, :, None] - data["observer_position"][..., None, :]
     point = quaternion.rotate(quaternion.conjugate(data["true_q_ic"][..., None, :]), away)
-    pixel = pinhole.project(point, data["camera_scale"][:, None, None, None])
+    pixel = pinhole.project(point, data["focal_px"][:, None, None, None])
     seen = pinhole.in_view(point, pixel, data["image_half_size"][:, None, None, None])
     return np.where(seen[..., None], pixel, np.nan)

@@ -17,15 +17,15 @@ class PinholeCamera(SimulationPart):
     """The camera that all satellites have."""
 
     needs = ("observer_position",)
-    knows = ("camera_scale", "image_half_size")
+    knows = ("focal_px", "image_half_size")
     kind: Literal["pinhole_camera"]
-    scale_px: Positive = Field(description="focal length in pixels")
+    focal_px: Positive
     half_size_px: HalfSize = Field(description="half the width and the height of the image")
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
-        """Return scale (run,) and half size (run, 2)."""
+        """Return focal length (run,) and half size (run, 2)."""
         runs = len(draws.runs)
         return {
-            "camera_scale": np.full(runs, self.scale_px),
+            "focal_px": np.full(runs, self.focal_px),
             "image_half_size": np.tile(self.half_size_px, (runs, 1)),
         }

@@ -31,5 +31,5 @@ def require_view(visible: BoolArray) -> None:
     if not visible.any(-1).all():
         raise ValueError(
             "no camera sees the debris at the start: it is behind them or outside their images; "
-            "change the orbits, the camera's scale_px or half_size_px"
+            "change the orbits, the camera's focal_px or half_size_px"
         )

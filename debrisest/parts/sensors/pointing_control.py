@@ -26,7 +26,7 @@ from debrisest.vocabulary import has_runs
 
 _INPUTS = (
     *("orbit_position", "orbit_velocity", "observer_position", "observer_velocity"),
-    *("camera_scale", "image_half_size"),
+    *("focal_px", "image_half_size"),
 )
 
 _UNCERTAINTY = Uncertainty()
@@ -58,7 +58,7 @@ class PointingControl(SimulationPart):
     angle_error: NonNegative = Field(0.05, description="share of the measured Euler angles")
     rate_error: NonNegative = Field(0.05, description="share of the measured rates")
     errors: Literal["constant", "white"] = "constant"
-    round_pixel: bool = True
+    whole_pixels: bool = True
     orbital_rate: Literal["ignored", "counted"] = "ignored"
     held_in: Frozen = Field("local", description="axes in which cameras stand still meanwhile")
     drift_error: NonNegative = Field(
@@ -132,7 +132,7 @@ def _loop(
     position, velocity, observer_position, observer_velocity, scale, half_size = inputs
     track = seen_from(position, velocity, observer_position, observer_velocity, part.axes)
     craft = spacecraft(np.array(part.inertia_kg_m2))
-    camera = Camera(scale[:, None], half_size[:, None], part.margin_px, part.round_pixel)
+    camera = Camera(scale[:, None], half_size[:, None], part.margin_px, part.whole_pixels)
     controller = Controller(
         craft=craft,
         scale=camera.scale,

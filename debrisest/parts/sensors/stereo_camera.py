@@ -17,49 +17,51 @@ _POSE = ("true_position", "true_velocity", "true_q_lt", "true_rate_l")
 
 
 class StereoCamera(SimulationPart):
-    """Two parallel cameras that look along track: slopes, their flow, and the disparity.
+    """Two parallel cameras that look along track: pixels, their flow, and the disparity.
 
+    With a focal length of one pixel, pixels are slopes.
     A noise that is not given means "not measured". A feature can be missing, as a whole, by chance
     or because the surface there faces away, and any single value can be an outlier.
     """
 
     needs = (*_POSE, "true_point_b")
-    knows = ("baseline", "pixel_noise", "flow_noise", "disparity_noise")
+    knows = ("baseline", "focal_px", "pixel_noise", "flow_noise", "disparity_noise")
     measures = ("measured_pixel", "measured_flow", "measured_disparity")
     kind: Literal["stereo_camera"]
     baseline_m: Positive
-    pixel_noise: Positive | None = Field(None, description="of slopes, focal length 1")
-    flow_noise_1_s: Positive | None = None
-    disparity_noise: Positive | None = None
+    focal_px: Positive = 1.0
+    pixel_noise_px: Positive | None = None
+    flow_noise_px_s: Positive | None = None
+    disparity_noise_px: Positive | None = None
     from_s: NonNegative = Field(1.0, description="time of the first measurement")
     missing_per_frame: Annotated[int, Field(ge=0)] = 0
-    occlusion: bool = Field(False, description="features whose surface faces away are not seen")
+    visibility: Literal["all", "back_face"] = "all"
     outlier_share: Annotated[float, Field(ge=0, le=1)] = 0.0
     outlier_sigmas: NonNegative = 100.0
 
     @model_validator(mode="after")
     def _measures_something(self) -> "StereoCamera":
-        if not any((self.pixel_noise, self.flow_noise_1_s, self.disparity_noise)):
+        if not any(self._noises):
             raise ValueError(
-                "cameras that measure nothing; give at least one of: pixel_noise, flow_noise_1_s, "
-                "disparity_noise"
+                "cameras that measure nothing; give at least one of: pixel_noise_px, "
+                "flow_noise_px_s, disparity_noise_px"
             )
         return self
 
     @property
     def needed(self) -> tuple[str, ...]:
-        """Return the datasets that are needed, with occlusion the normals too."""
-        return (*self.needs, "true_normal_b") if self.occlusion else self.needs
+        """Return the datasets that are needed: normals only where backs are hidden."""
+        return (*self.needs, "true_normal_b") if self.visibility == "back_face" else self.needs
 
     @property
     def given(self) -> tuple[str, ...]:
         """Return the datasets that these cameras give: those with a noise."""
-        named = zip(self.measures, self.knows[1:], self._noises)
-        return ("baseline", *(name for *pair, noise in named if noise for name in pair))
+        named = zip(self.measures, self.knows[2:], self._noises)
+        return (*self.knows[:2], *(name for *pair, noise in named if noise for name in pair))
 
     @property
     def _noises(self) -> tuple[float | None, ...]:
-        return self.pixel_noise, self.flow_noise_1_s, self.disparity_noise
+        return self.pixel_noise_px, self.flow_noise_px_s, self.disparity_noise_px
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return pixels and flow (run, time, camera, feature, 2), disparity, known noise."""
@@ -67,12 +69,15 @@ class StereoCamera(SimulationPart):
         sigma = np.repeat([noise or 0.0 for noise in self._noises], (4, 4, 1))
         errors = draws.normal(Stream.MEASUREMENT_NOISE, exact.shape[1:])
         rank = draws.uniform(Stream.CLUTTER, exact.shape[1:3]).argsort(-1).argsort(-1)
-        measured = exact + sigma * (errors + self._outliers(exact.shape[1:], draws))
+        measured = self.focal_px * exact + sigma * (errors + self._outliers(exact.shape[1:], draws))
         seen = seen & (rank >= self.missing_per_frame)
-        if self.occlusion:
+        if self.visibility == "back_face":
             seen = seen & _facing(data, self.baseline_m)
         measured[~(seen & (clock.times >= self.from_s)[:, None])] = np.nan
-        return self._named(measured) | {"baseline": _each(self.baseline_m, measured)}
+        return self._named(measured) | {
+            "baseline": _each(self.baseline_m, measured),
+            "focal_px": _each(self.focal_px, measured),
+        }
 
     def _outliers(self, shape: tuple[int, ...], draws: Draws) -> Array:
         hit = draws.uniform(Stream.CLUTTER, shape) < self.outlier_share

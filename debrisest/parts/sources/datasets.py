@@ -10,7 +10,7 @@ from debrisest.arrays import Data
 from debrisest.errors import UserError
 from debrisest.results import store
 from debrisest.roles import SourcePart
-from debrisest.vocabulary import VOCABULARY, has_runs
+from debrisest.vocabulary import AXIS_LENGTH, VOCABULARY, has_runs
 
 _WANTED = "give a file of the stage simulate, or one that debrisest import wrote"
 
@@ -34,6 +34,7 @@ class Datasets(SourcePart):
             raise UserError(f"{path} is a file of the stage {stage}; {_WANTED}")
         data = store.read(path)
         _require_times(path, data)
+        _require_shapes(path, data)
         _require_sigmas(path, data)
         return _good(data)
 
@@ -48,6 +49,19 @@ def _require_times(path: Path, data: Data) -> None:
         raise UserError(f"{path}: time_s needs at least two epochs, in seconds, ascending")
     if "run" not in data:
         raise UserError(f"{path}: the dataset run is missing; a single experiment is run 0")
+
+
+def _require_shapes(path: Path, data: Data) -> None:
+    lengths: dict[str, int] = dict(AXIS_LENGTH)
+    for name, value in data.items():
+        axes = VOCABULARY[name].axes
+        if value.ndim != len(axes):
+            raise UserError(f"{path}: {name} has {value.ndim} axes; needed: {', '.join(axes)}")
+        for axis, length in zip(axes, value.shape):
+            if lengths.setdefault(axis, length) != length:
+                raise UserError(
+                    f"{path}: {name} has {length} values along {axis}, not {lengths[axis]}"
+                )
 
 
 def _require_sigmas(path: Path, data: Data) -> None:

@@ -20,7 +20,7 @@ class DrawnShape(SimulationPart):
     """
 
     needs = (
-        *("image_point", "measured_range", "focal_px"),
+        *("measured_pixel", "measured_range", "focal_px"),
         *("chaser_position_h", "true_q_hc", "true_q_ib", "true_rate_b", "true_inertia_b"),
     )
     knows = tuple(
@@ -73,7 +73,7 @@ class DrawnShape(SimulationPart):
 
         Of a point that the first image lacks, nothing is known but that it is near.
         """
-        pixel = data["image_point"][:, 0]
+        pixel = data["measured_pixel"][:, 0, 0]
         depth = np.linalg.norm(position, axis=-1)[:, None]
         seen = ~np.isnan(pixel[..., 0])
         slope = np.where(seen[..., None], pixel, 0.0) / data["focal_px"][:, None, None]

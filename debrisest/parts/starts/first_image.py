@@ -17,12 +17,15 @@ class FirstImage(FromGuess):
     camera's attitude, and is much better than a drawn direction.
     """
 
-    needs = ("start_relative_position_h", "image_point", "measured_range", "known_q_hc", "focal_px")
+    needs = (
+        *("start_relative_position_h", "known_q_hc", "focal_px"),
+        *("measured_pixel", "measured_range"),
+    )
     kind: Literal["first_image"]
 
     def start(self, data: Data, clock: Clock) -> tuple[Data, Data]:
         """Return the initial guess by name, and its variance by name."""
-        pixels = data["image_point"][:, 0]
+        pixels = data["measured_pixel"][:, 0, 0]
         seen: BoolArray = np.asarray(np.isfinite(pixels).all(-1).any(-1))
         middle = np.nanmedian(np.where(seen[:, None, None], pixels, 0.0), axis=1)
         slope = middle / data["focal_px"][:, None]

@@ -28,6 +28,7 @@ class GuessedQuantity(Keys):
 class GivenGuess(SimulationPart):
     """Values with their standard deviations, the same in every run."""
 
+    tried = True
     kind: Literal["given"]
     quantities: dict[str, GuessedQuantity] = Field(
         {}, description="name of an estimated quantity: value, sigma and unit"
@@ -65,6 +66,7 @@ class GivenGuess(SimulationPart):
         """Return each first guess and its sigma, in SI and radians."""
         result: Data = {}
         for name, quantity in self.quantities.items():
+            _require_all_features(name, quantity, data)
             scale = table_scale(f"start_{name}", quantity.unit or "")
             value = np.asarray(quantity.value, dtype=np.float64) / scale
             sigma = np.broadcast_to(np.asarray(quantity.sigma) / scale, value.shape)
@@ -90,6 +92,12 @@ def _require_fitting(name: str, quantity: GuessedQuantity) -> None:
         raise ValueError(f"{name} needs {wanted} values, found {' x '.join(map(str, shape))}")
     if _shape(name, quantity.sigma) not in ((), shape):
         raise ValueError(f"{name}: sigma is one number, or one for each value")
+
+
+def _require_all_features(name: str, quantity: GuessedQuantity, data: Data) -> None:
+    wanted, found = len(data.get("feature", ())), len(np.atleast_1d(quantity.value))
+    if "feature" in VOCABULARY[f"start_{name}"].axes and wanted not in (0, found):
+        raise ValueError(f"{name} is given for {found} features, but there are {wanted}")
 
 
 def _shape(name: str, values: Any) -> tuple[int, ...]:

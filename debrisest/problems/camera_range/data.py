@@ -12,13 +12,15 @@ def require_measurable(
     data: Data, ranges: Literal["measured_range", "landmark_range"] = "measured_range"
 ) -> None:
     """Raise ValueError, in one sentence, for too few points or for a range that cannot be."""
-    points = data["image_point"].shape[2]
+    cameras, points = data["measured_pixel"].shape[2:4]
+    if cameras != 1:
+        raise ValueError(f"the pixels are those of {cameras} cameras; one is possible here")
     if points < FEWEST_POINTS:
         raise ValueError(
             f"pose and shape from one camera need at least {FEWEST_POINTS} points, "
             f"{points} were tracked"
         )
-    if np.isnan(data["image_point"]).all(axis=(1, 2, 3)).any():
+    if np.isnan(data["measured_pixel"]).all(axis=(1, 2, 3, 4)).any():
         raise ValueError("no image shows any point")
     wrong = data[ranges] <= 0.0
     if wrong.any():

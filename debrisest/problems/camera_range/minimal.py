@@ -41,7 +41,6 @@ from debrisest.target.start_frame import in_start_frame
 _SCORED = np.r_[RATE_ERROR, POSITION_ERROR, VELOCITY_ERROR, LOG_INERTIA_ERROR]
 _COUNTED = ("restarts", "dropped", "fit")
 """What filters count over whole runs, for the tables."""
-_RANGE = ("measured_range",)
 _PLACES = {
     "rate_b": (RATE, RATE_ERROR),
     "relative_position_h": (POSITION, POSITION_ERROR),
@@ -60,7 +59,7 @@ class CameraRangeMinimal(ProblemPart):
 
     model_kind = "landmark_model"
     needs: ClassVar[tuple[str, ...]] = (
-        *("image_point", "known_q_hc", "focal_px", "image_noise_px", "range_noise"),
+        *("measured_pixel", "known_q_hc", "focal_px", "pixel_noise", "range_noise"),
         *("attitude_noise", "orbit_position", "orbit_velocity"),
     )
     start_needs = ("rate_b", "relative_position_h", "relative_velocity_h", "point_b")
@@ -92,15 +91,16 @@ class CameraRangeMinimal(ProblemPart):
     @property
     def needed(self) -> tuple[str, ...]:
         """Return the datasets that are needed: those of the range that is used."""
-        ranges = ("landmark", "landmark_range") if self.range_to == "landmark" else _RANGE
-        return (*self.needs, *ranges)
+        if self.range_to == "landmark":
+            return (*self.needs, "landmark", "landmark_range")
+        return (*self.needs, "measured_range")
 
     def measurements(self, data: Data) -> Array:
         """Return pixels point by point, then the range; or a range beside each point's pixels."""
         require_measurable(
             data, "landmark_range" if self.range_to == "landmark" else "measured_range"
         )
-        pixels = data["image_point"]
+        pixels = data["measured_pixel"][:, :, 0]
         epochs = pixels.shape[:2]
         if self.range_to != "landmark":
             flat = pixels.reshape(*epochs, -1)
@@ -116,11 +116,11 @@ class CameraRangeMinimal(ProblemPart):
         return landmark_model(
             CameraRangeGeometry(
                 camera=quaternion.to_matrix(data["known_q_hc"]),
-                points=data["image_point"].shape[2],
+                points=data["measured_pixel"].shape[3],
                 mean_motion=mean_motion_of(*start),
                 step=clock.step,
                 focal=float(data["focal_px"][0]),
-                pixel_sigma=float(data["image_noise_px"][0]),
+                pixel_sigma=float(data["pixel_noise"][0]),
                 range_sigma=self.range_noise_m or float(data["range_noise"][0]),
                 attitude_sigma=white,
                 attitude=self.camera_attitude,
@@ -197,7 +197,7 @@ class CameraRangeMinimal(ProblemPart):
     def _ranged(self, data: Data) -> Array:
         """1 for the point (run, time, N) that the range is held on; any where there is none."""
         landmark = np.nan_to_num(data["landmark"]).astype(np.int64)
-        return np.eye(data["image_point"].shape[2])[landmark]
+        return np.eye(data["measured_pixel"].shape[3])[landmark]
 
     def _extras(self) -> tuple[list[float], list[float]]:
         """First guess and sigma of the constants of the sensors."""

@@ -38,8 +38,8 @@ class CameraRangeRedundant(ProblemPart):
 
     model_kind = "model"
     needs: ClassVar[tuple[str, ...]] = (
-        *("image_point", "measured_range", "orbit_position", "orbit_velocity"),
-        *("focal_px", "image_noise_px", "range_noise"),
+        *("measured_pixel", "measured_range", "orbit_position", "orbit_velocity"),
+        *("focal_px", "pixel_noise", "range_noise"),
     )
     start_needs = _NAMES
     kind: Literal["camera_range_redundant"]
@@ -47,20 +47,18 @@ class CameraRangeRedundant(ProblemPart):
     def measurements(self, data: Data) -> Array:
         """Return pixels point by point, and the range (run, time, 2N + 1)."""
         require_measurable(data)
-        pixels = data["image_point"]
+        pixels = data["measured_pixel"]
         flat = pixels.reshape(*pixels.shape[:2], -1)
         return np.concatenate([flat, data["measured_range"][..., None]], axis=-1)
 
     def model(self, data: Data, clock: Clock) -> Model:
         """Return process and measurement of one clock step."""
         start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
-        points = data["image_point"].shape[2]
+        points = data["measured_pixel"].shape[3]
         known = CameraGeometry(
             points, mean_motion_of(*start), clock.step, float(data["focal_px"][0])
         )
-        return redundant_model(
-            known, float(data["image_noise_px"][0]), float(data["range_noise"][0])
-        )
+        return redundant_model(known, float(data["pixel_noise"][0]), float(data["range_noise"][0]))
 
     def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, n) and its diagonal covariance (run, n, n)."""

@@ -51,10 +51,10 @@ class CameraGeometry(NamedTuple):
         return slice(CORE + 3 * self.points, CORE + 6 * self.points)
 
 
-def redundant_model(known: CameraGeometry, image_noise_px: float, range_noise: float) -> Model:
+def redundant_model(known: CameraGeometry, pixel_noise: float, range_noise: float) -> Model:
     """Return the model; process noise is zero, the motion is exact (Sec. 7.1 of the paper)."""
     size = CORE + 6 * known.points
-    noise = np.append(np.full(2 * known.points, image_noise_px**2), range_noise**2)
+    noise = np.append(np.full(2 * known.points, pixel_noise**2), range_noise**2)
     return Model(
         process=lambda state, _: process(known, state),
         measurement=lambda state, _: measurement(known, state),

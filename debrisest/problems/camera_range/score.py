@@ -44,7 +44,7 @@ def scores(data: Data, camera: str, rows: IntArray, log_inertia_sigma: float | N
 
 def scored_features(data: Data) -> BoolArray:
     """Return which features (run, feature) are seen often enough to be scored."""
-    return np.asarray(np.isfinite(data["image_point"][..., 0]).mean(axis=1) > SEEN)
+    return np.asarray(np.isfinite(data["measured_pixel"][:, :, 0, :, 0]).mean(axis=1) > SEEN)
 
 
 def _components(data: Data, truth: InStartFrame) -> Data:

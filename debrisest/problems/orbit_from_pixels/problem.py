@@ -19,7 +19,7 @@ from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 class OrbitFromPixels(ProblemPart):
     """The problem of this file, its noises and what of the data it uses."""
 
-    needs = ("observer_position", "known_q_ic", "camera_scale", "section", "detected_pixel")
+    needs = ("observer_position", "known_q_ic", "focal_px", "section", "measured_pixel")
     model_kind = "scan_model"
     start_needs = ("orbit_position", "orbit_velocity")
     true_state = ("orbit_position", "orbit_velocity")
@@ -59,7 +59,7 @@ class OrbitFromPixels(ProblemPart):
 
     def measurements(self, data: Data) -> Array:
         """Return the points (run, time, observer, detection, 2)."""
-        points = data["detected_pixel"]
+        points = data["measured_pixel"]
         if self.detections == "own":
             points = labelled(points, data["target_detection"].astype(np.int64))
         if self.updates_in_control:
@@ -75,7 +75,7 @@ class OrbitFromPixels(ProblemPart):
                 step=clock.step,
                 observer=_time_first(data["observer_position"]),
                 to_camera=_time_first(to_camera),
-                scale=data["camera_scale"],
+                scale=data["focal_px"],
                 acceleration_noise=self.acceleration_noise_m_s2,
                 pixel_variance=self.pixel_variance_px2,
                 with_bias=self.attitude_bias,

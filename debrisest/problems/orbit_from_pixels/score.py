@@ -71,7 +71,7 @@ def _pixels(data: Data, position: Array, q_ic: Array) -> Array:
     """Pixels (run, time, observer, 2) of (run, time, 3), NaN of what is behind a camera."""
     away = position[:, :, None] - data["observer_position"]
     point = quaternion.rotate(quaternion.conjugate(q_ic), away)
-    pixel = pinhole.project(point, data["camera_scale"][:, None, None])
+    pixel = pinhole.project(point, data["focal_px"][:, None, None])
     return np.where(point[..., 2:] > 0.0, pixel, np.nan)
 
 

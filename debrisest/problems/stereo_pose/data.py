@@ -67,7 +67,7 @@ def geometry_of(
 
 
 def measured_of(data: Data, shown: Shown) -> Array:
-    """Return the measurements (run, time, m): point by point, then the angular acceleration."""
+    """Return the measurements (run, time, m): slopes point by point, then the acceleration."""
     groups = []
     for name in ("pixel", "flow"):
         if getattr(shown, "pixels" if name == "pixel" else name):
@@ -77,7 +77,8 @@ def measured_of(data: Data, shown: Shown) -> Array:
     if shown.disparity:
         groups.append(data["measured_disparity"][..., None])
     epochs = data["orbit_position"].shape[:2]
-    flat = [np.concatenate(groups, axis=-1).reshape(*epochs, -1)] if groups else []
+    focal = data["focal_px"][:, None, None]
+    flat = [np.concatenate(groups, axis=-1).reshape(*epochs, -1) / focal] if groups else []
     if shown.acceleration:
         flat.append(data["measured_angular_acceleration"])
     return np.concatenate(flat, axis=-1)
@@ -92,7 +93,7 @@ def noise_of(data: Data, known: StereoGeometry) -> Array:
         ("disparity", stereo.DISPARITY),
     ):
         if f"{name}_noise" in data:
-            rows[where] = data[f"{name}_noise"][0]
+            rows[where] = data[f"{name}_noise"][0] / data["focal_px"][0]
     noise = np.tile(rows[known.rows], known.points)
     if not known.shown.acceleration:
         return noise

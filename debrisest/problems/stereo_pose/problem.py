@@ -31,7 +31,9 @@ from debrisest.roles import Keys, NonNegative, ProblemPart, Window
 class _StereoPose(ProblemPart):
     """What both forms share: the measurements, and how estimates are scored."""
 
-    needs: ClassVar[tuple[str, ...]] = ("baseline", "orbit_position", "orbit_velocity")
+    needs: ClassVar[tuple[str, ...]] = (
+        *("baseline", "focal_px", "orbit_position", "orbit_velocity"),
+    )
     start_needs: ClassVar[tuple[str, ...]] = tuple(NAMES)
     true_state = tuple(f"true_{name}" for name in NAMES)
     measures: list[Measure] | None = None

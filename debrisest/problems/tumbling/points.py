@@ -44,6 +44,8 @@ class TumblingPoints(ProblemPart):
     def measurements(self, data: Data) -> Array:
         """Return the contrasts of the points (run, time, 3 (feature - 1)), in inertial axes."""
         seen = _seen(data)
+        if not compared(seen).any((1, 2)).all():
+            raise ValueError("no epoch shows two points of the body, so that nothing is told of it")
         given = np.where(compared(seen)[..., None], contrasts(data["measured_point"], seen), np.nan)
         return given.reshape(*given.shape[:2], -1)
 

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from traceback import extract_tb
 
 from debrisest.catalog import kind_of
 from debrisest.errors import UserError
 from debrisest.roles import Part
 
-_TOLD = (ValueError, UserError)
-"""Raised on purpose, with a sentence for a person."""
+_LIBRARIES = {"numpy", "scipy"}
 
 
 @contextmanager
@@ -24,9 +25,17 @@ def about(path: str, part: Part) -> Iterator[None]:
 def reason(error: Exception) -> str:
     """Return why a run failed, the part first; what nobody foresaw is said to be a mistake."""
     said = str(error) or "no more is known"
-    if type(error) not in _TOLD:
+    if not _on_purpose(error):
         said = (
-            f"{type(error).__name__} {said}; this is a mistake of debrisest or of a plug-in: "
+            f"{type(error).__name__}: {said}; this is a mistake of debrisest or of a plug-in: "
             "please report it"
         )
     return ": ".join([*getattr(error, "__notes__", []), said])
+
+
+def _on_purpose(error: Exception) -> bool:
+    """Whether a part raised it, with a sentence, and not a line that no one thought would fail."""
+    where = extract_tb(error.__traceback__)[-1]
+    by_library = _LIBRARIES & set(Path(where.filename).parts)
+    raised = (where.line or "").startswith("raise ") and not by_library
+    return raised and type(error) in (ValueError, UserError)

@@ -51,7 +51,7 @@ class TwoObservers:
             "orbit_velocity": orbit[1],
             "observer_position": np.stack([position] * runs),
             "true_q_ic": np.stack([q_ic.reshape(len(times), 2, 4)] * runs),
-            "camera_scale": np.full(runs, 335.0),
+            "focal_px": np.full(runs, 335.0),
             "image_half_size": np.tile([240.0, 180.0], (runs, 1)),
             "section": np.tile(section, (runs, 1)),
             "true_pixel": np.where(seen[..., None], pixel, np.nan),

@@ -1,0 +1,19 @@
+"""What recoveries give, and their errors."""
+
+from debrisest.quantity import RUN, TIME, TIME_QUATERNION, Quantity
+
+QUANTITIES = {
+    "raw_q_if": Quantity(TIME_QUATERNION, "1", "attitude from the points of one epoch"),
+    "q_if": Quantity(TIME_QUATERNION, "1", "recovered attitude of the feature frame"),
+    "piece": Quantity(TIME, "1", "piece of uninterrupted samples the epoch belongs to"),
+    "sign": Quantity(("run", "piece_number"), "1", "sign given to each piece"),
+    "objective": Quantity(("run", "quaternion"), "1", "objective of each component's recovery"),
+    "iterations": Quantity(("run", "quaternion"), "1", "iterations of each component's recovery"),
+    "recovered_pitch": Quantity(TIME, "rad", "pitch error of the recovered attitude", "deg"),
+    "recovered_attitude": Quantity(TIME, "rad", "angle error of the recovered attitude", "deg"),
+    "coverage": Quantity(RUN, "1", "share of epochs with an attitude", "1"),
+    "pieces": Quantity(RUN, "1", "pieces of uninterrupted samples", "1"),
+    "signs_right": Quantity(RUN, "1", "share of sign decisions that were right", "1"),
+    "signs_all_right": Quantity(RUN, "1", "every sign of the run right", "1"),
+    "solved": Quantity(RUN, "1", "recovery converged in every component", "1"),
+}

@@ -1,0 +1,62 @@
+"""What is estimated of a target before a camera and a range finder, and the errors."""
+
+from debrisest.quantity import (
+    POINT,
+    RUN,
+    RUN_VECTOR,
+    TIME,
+    TIME_QUATERNION,
+    TIME_VECTOR,
+    Quantity,
+    with_sigmas,
+)
+
+AXIS_LENGTH = {"log_ratio": 5}
+
+_ESTIMATED = {
+    "start_relative_position_h": Quantity(RUN_VECTOR, "m", "first guess of the chaser's position"),
+    "start_relative_velocity_h": Quantity(RUN_VECTOR, "m/s", "first guess of its velocity"),
+    "start_q_cb": Quantity(("run", "quaternion"), "1", "first guess of the attitude to the camera"),
+    "start_rate_b": Quantity(RUN_VECTOR, "rad/s", "first guess of the rate"),
+    "start_inertia_b": Quantity(("run", "row", "column"), "kg m2", "first guess of the inertia"),
+    "start_point_c": Quantity(POINT, "m", "first guess of the features in camera axes"),
+    "relative_position_h": Quantity(TIME_VECTOR, "m", "estimated chaser_position_h"),
+    "relative_velocity_h": Quantity(TIME_VECTOR, "m/s", "estimated chaser_velocity_h"),
+    "q_hb": Quantity(TIME_QUATERNION, "1", "estimated attitude, body to Hill axes"),
+    "q_cb": Quantity(TIME_QUATERNION, "1", "estimated attitude, body to camera axes"),
+    "log_inertia": Quantity((*TIME, "log_ratio"), "1", "estimated log-ratios of the inertia"),
+    "inertia_b": Quantity((*TIME, "row", "column"), "kg m2", "estimated inertia tensor"),
+    "range_bias": Quantity(TIME, "m", "estimated distance of the surface from the centre of mass"),
+    "camera_bias": Quantity(TIME_VECTOR, "rad", "estimated error of known_q_hc, camera axes"),
+    "point_c": Quantity((*TIME, "feature", "axis"), "m", "estimated features from the camera"),
+    "first_point_error": Quantity(TIME_VECTOR, "m", "error of the first feature"),
+    "attitude_error": Quantity(TIME_VECTOR, "rad", "error of the attitude, angles in body axes"),
+}
+
+QUANTITIES = {
+    **with_sigmas(_ESTIMATED),
+    "points": Quantity(TIME, "m", "error of the features, RMS over them", "m"),
+    "inertia": Quantity(TIME, "1", "relative error of the inertia's shape", "1"),
+    "inertia_tensor": Quantity(TIME, "kg m2", "2-norm of the inertia's error", "kg m2"),
+    "constraint": Quantity(TIME, "m", "disagreement of point_c and point_b, RMS", "m"),
+    "gauge": Quantity(TIME, "rad", "angle of the best rotation of the features", "deg"),
+    "aligned_rate": Quantity(TIME, "rad/s", "rate error after it", "deg/s"),
+    "aligned_attitude": Quantity(TIME, "rad", "attitude error after it", "deg"),
+    "aligned_points": Quantity(TIME, "m", "error of the features after it, RMS", "m"),
+    "aligned_inertia": Quantity(TIME, "1", "relative error of the inertia's shape after it", "1"),
+    "unobservable_ratios": Quantity(
+        *(RUN, "1", "directions of log_inertia nothing tells of", "1"),
+        after_figure=" of 5 unobservable",
+    ),
+    "ratio_deviation": Quantity(RUN, "1", "1-sigma of the worst direction that is told", "1"),
+    "position_remaining": Quantity(RUN, "1", "position error at the end by that at first", "1"),
+    "velocity_remaining": Quantity(RUN, "1", "velocity error at the end by that at first", "1"),
+    "rate_remaining": Quantity(RUN, "1", "rate error at the end by that at first", "1"),
+    "points_remaining": Quantity(RUN, "1", "error of features at the end by that at first", "1"),
+    "inertia_remaining": Quantity(RUN, "1", "inertia_tensor at the end by that at first", "1"),
+    "aligned_rate_remaining": Quantity(RUN, "1", "aligned_rate by the first rate error", "1"),
+    "aligned_points_remaining": Quantity(RUN, "1", "aligned_points by the first error", "1"),
+    "inertia_error": Quantity((*TIME, "row", "column"), "kg m2", "error of inertia_b"),
+    "log_inertia_error": Quantity((*TIME, "log_ratio"), "1", "error of log_inertia"),
+    "reference_point_b": Quantity(POINT, "m", "true features in the estimator's body axes"),
+}
