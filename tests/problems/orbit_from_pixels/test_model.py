@@ -83,7 +83,7 @@ def test_tracks_are_one_more_axis(two_observers) -> None:
 def test_some_runs_are_shown_what_they_are_among_all(two_observers) -> None:
     """With attitude errors of their own, and scales that differ."""
     scene = two_observers(3, bias_mrad=10.0)
-    data = scene.data | {"camera_scale": np.array([300.0, 335.0, 370.0])}
+    data = scene.data | {"focal_px": np.array([300.0, 335.0, 370.0])}
     problem, some = scene.problem(attitude_bias=True), np.array([2, 0])
     model, state = problem.model(data, scene.CLOCK), problem.truth(scene.data)[:, 30]
     assert np.ptp(model.points(state, 30), axis=0).min() > 1.0
