@@ -69,6 +69,8 @@ def draw(rng: np.random.Generator) -> Target:
     times = np.arange(float(rng.integers(300, 1500)))
     rate0 = rng.normal(size=3)
     rate0 *= np.radians(np.exp(rng.uniform(np.log(0.2), np.log(20.0)))) / np.linalg.norm(rate0)
+    if rng.uniform() < 0.1:
+        kind, rate0 = "spin", np.linalg.norm(rate0) * rng.permutation(np.eye(3)[0])
     q0, q_pf = quaternion.normalize(rng.normal(size=(2, 4)))
     half = np.exp(rng.uniform(np.log(0.63), np.log(6.3), 3))
     model, normals = draw_points(rng, half)
@@ -202,7 +204,7 @@ def inertia_error(motion: Motion, target: Target, turn: Array) -> float:
         return 0.0
     axes = quaternion.to_matrix(turn)
     true = log_inertia.log_ratios(axes @ target.inertia() @ axes.T)
-    sigma, directions = inertia_directions(motion.covariance)
+    sigma, directions = inertia_directions(motion.claimed)
     error = np.abs(directions.T @ (motion.arc.log_inertia - true)) / sigma
     shown = sigma < LOST * PRIOR_SIGMA
     return float(error.max(initial=0.0, where=shown)) / 5.0

@@ -16,7 +16,7 @@ from debrisest.batch.local_rates import local_rates
 from debrisest.batch.motion import Motion
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.rates import Rates
-from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, pairs
+from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, odd_points, pairs
 from debrisest.batch.solve import Solution, solve
 from debrisest.batch.tracks import Tracks, tracks
 
@@ -35,19 +35,22 @@ def estimate_from_points(
     typical = noise_of(found) if sigma is None else _typical(points, sigma)
     if not np.isfinite(typical):
         typical = 1.0
-    kept = largest_rigid_set(found, typical)
+    scale = float(np.nanmax([typical, noise_of(found)]))
+    kept = largest_rigid_set(found, scale)
     tracked = tracks(times, points, typical if sigma is None else sigma)
     tracked = tracked.without(~kept)
     tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
     unit = typical if sigma is None else 1.0
+    whole, tracked = tracked, tracked.without(odd_points(tracked, found, scale))
+    tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
     if model is not None:
         known = KnownPoints(tracked, model)
-        return _with_points(solve(known, times, sigma is not None), plain, tracked, unit)
+        return _with_points(solve(known, times, sigma is not None), plain, whole, unit)
     cloud = align_clouds(tracked)
     all_points = FreePoints(tracked, cloud.model)
     joined = cloud.tracks.seen.any(axis=0)
     wider = None if np.array_equal(joined, tracked.seen.any(axis=0)) else all_points
-    return _with_points(solve(cloud, times, sigma is not None, wider), plain, tracked, unit)
+    return _with_points(solve(cloud, times, sigma is not None, wider), plain, whole, unit)
 
 
 def estimate_from_attitudes(times: Array, q: Array, sigma: Array | float | None = None) -> Motion:
