@@ -145,4 +145,4 @@ def _nutation(arc: Arc) -> Array:
     motion = nutation(rate, moments)
     momentum = moments * rate
     circled = np.abs(momentum[motion.order[0]]) / max(float(np.linalg.norm(momentum)), 1e-300)
-    return np.array([np.arccos(np.clip(circled, 0.0, 1.0)), motion.period[0]])
+    return np.array([np.arccos(np.clip(circled, 0.0, 1.0)), 2.0 * motion.period[0]])

@@ -35,13 +35,18 @@ class Status(Outcome):
         "torque-free motion fits, but the data are too few to test it: more epochs, or more points "
         "at an epoch, would decide",
     )
-    NOT_TORQUE_FREE = (
+    MODEL_IN_DOUBT = (
         4,
+        "the known points do not fit each other, and the data cannot tell which of them is "
+        "elsewhere: check their places, or estimate with unknown points",
+    )
+    NOT_TORQUE_FREE = (
+        5,
         "no torque-free motion explains the data beyond the stated times: attitude and rate are "
         "from a smoother that assumes no law of motion, and no inertia is claimed",
     )
     TOO_FEW = (
-        5,
+        6,
         "too few data for a motion: it takes six epochs, close enough in time that the body turns "
         "less than a quarter turn between them, each with an attitude or three points not in line",
     )

@@ -54,12 +54,13 @@ def solve(
     growth = search(evidence, local)
     if growth.whole and growth.fit.steady and wider is not None:
         growth = widened(growth, wider)
+    certain = True
     if growth.whole:
-        growth = without_biased_points(growth)
+        growth, certain = without_biased_points(growth)
     solution = _torque_free(growth, local, times, noise_known)
     if solution is None:
         return _any_motion(evidence, local, growth, times, noise_known)
-    return solution
+    return solution if certain else solution._replace(status=Status.MODEL_IN_DOUBT)
 
 
 def _torque_free(growth: Growth, local: Local, times: Array, noise_known: bool) -> Solution | None:
