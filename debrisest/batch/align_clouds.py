@@ -1,8 +1,8 @@
 """Clouds of points of unknown places laid over each other, without any dynamics.
 
-The epoch that shows most points is the first cloud. Attitudes of the epochs that share points with
-it, and places of all points of these epochs at these attitudes, follow in turn (generalised
-Procrustes analysis) until the cloud has grown to all that hangs together.
+An epoch that shares points with many others is the first cloud. Attitudes of the epochs that share
+three points with it, and places of all points of these epochs at these attitudes, follow in turn
+(generalised Procrustes analysis) until the cloud has grown to all that hangs together.
 """
 
 import numpy as np
@@ -13,6 +13,8 @@ from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.tracks import Tracks
 
 _ROUNDS = 60
+_CANDIDATES = 300  # epochs that may be the first cloud
+_NEARLY = 0.8  # of the most epochs that share points with one
 _CAUCHY = 9.0
 _ENOUGH = 0.02  # of the points' standard deviation, the change at which the cloud is at rest
 
@@ -24,7 +26,7 @@ def align_clouds(tracks: Tracks) -> FreePoints:
     """
     if not len(tracks.times):
         return FreePoints(tracks, np.zeros((tracks.weight.shape[1], 3)))
-    first = int(np.argmax(_spread(tracks)))
+    first = _first_cloud(tracks)
     model, known = tracks.centred()[first], tracks.seen[first]
     robust = tracks.weight
     for _ in range(_ROUNDS):
@@ -43,6 +45,15 @@ def align_clouds(tracks: Tracks) -> FreePoints:
         if at_rest:
             break
     return FreePoints(tracks._replace(weight=np.where(known, tracks.weight, 0.0)), model)
+
+
+def _first_cloud(tracks: Tracks) -> int:
+    """Return the epoch that shares three points with most others; of such, the widest cloud."""
+    seen = tracks.seen.astype(np.float64)
+    stride = -(-len(seen) // _CANDIDATES)
+    shared = np.sum(seen[::stride] @ seen.T >= 3.0, axis=1)
+    spread = np.where(shared >= _NEARLY * shared.max(), _spread(tracks)[::stride], -1.0)
+    return int(np.argmax(spread)) * stride
 
 
 def _spread(tracks: Tracks) -> Array:

@@ -55,6 +55,10 @@ class Attitudes:
         """Return the attitudes themselves."""
         return Seen(np.where(self.dof[:, None] > 0.0, self.q, np.nan), self.information)
 
+    def squares(self, q: Array, rate: Array) -> Array:
+        """Return the chi-square of each epoch (time,), NaN where nothing counts."""
+        return np.where(self.dof > 0.0, self.told(q, rate).chi2, np.nan)
+
     def gated(self, q: Array, rate: Array, limit: float) -> Self:
         """Return it without attitudes off by more than ``limit``, unless half would go."""
         kept = self.told(q, rate).chi2 <= limit

@@ -15,6 +15,18 @@ _SMALLEST_GAIN = 1e-3  # of the chi-square, where the descent ends
 _LEAST_DAMPING, _MOST_DAMPING = 1e-9, 1e8
 
 
+class Prior(NamedTuple):
+    """What else is held of the log-ratios of the inertia, beside the wide prior about zero."""
+
+    centre: Array
+    """(5,)."""
+    information: Array
+    """(5, 5)."""
+
+
+_NOTHING_ELSE = Prior(np.zeros(5), np.zeros((5, 5)))
+
+
 class Descent(NamedTuple):
     """Where a descent has ended."""
 
@@ -27,19 +39,21 @@ class Descent(NamedTuple):
     """Whether no further step gains anything."""
 
 
-def descend(evidence: Evidence, arc: Arc, iterations: int = 30) -> Descent:
+def descend(
+    evidence: Evidence, arc: Arc, iterations: int = 30, held: Prior = _NOTHING_ELSE
+) -> Descent:
     """Return the best arc near ``arc``."""
     damping, settled = 1e-4, False
-    normal, cost = _normal(evidence, arc)
+    normal, cost = _normal(evidence, arc, held)
     for _ in range(iterations):
         step, gain = _step(normal, damping, evidence.unknowns_fixed)
         if gain < _SMALLEST_GAIN:
             settled = True
             break
         tried = displaced(arc, step)
-        if _cost(evidence, tried) < cost:
+        if _cost(evidence, tried, held) < cost:
             arc, damping = tried, max(0.1 * damping, _LEAST_DAMPING)
-            normal, cost = _normal(evidence, arc)
+            normal, cost = _normal(evidence, arc, held)
         elif damping > _MOST_DAMPING:
             break
         else:
@@ -57,26 +71,28 @@ def covariance(hold: Array, fixed: int = 0) -> Array:
     return result
 
 
-def _normal(evidence: Evidence, arc: Arc) -> tuple[Normal, float]:
+def _normal(evidence: Evidence, arc: Arc, held: Prior) -> tuple[Normal, float]:
+    """Return the normal equations and the cost, both with the prior."""
     normal = evidence.normal(course(arc, evidence.times))
-    weight = np.zeros(UNKNOWNS)
-    weight[INERTIA] = PRIOR_SIGMA**-2
-    pull = normal.pull.copy()
+    pull, hold = normal.pull.copy(), normal.hold.copy()
     pull[INERTIA] -= arc.log_inertia * PRIOR_SIGMA**-2
-    held = Normal(normal.chi2, pull, normal.hold + np.diag(weight))
-    return held, normal.chi2 + _prior(arc)
+    pull[INERTIA] -= held.information @ (arc.log_inertia - held.centre)
+    hold[INERTIA, INERTIA] += PRIOR_SIGMA**-2 * np.eye(5) + held.information
+    return Normal(normal.chi2, pull, hold), normal.chi2 + _prior(arc, held)
 
 
-def _prior(arc: Arc) -> float:
-    return float(np.sum(arc.log_inertia**2)) / PRIOR_SIGMA**2
+def _prior(arc: Arc, held: Prior) -> float:
+    off = arc.log_inertia - held.centre
+    wide = float(np.sum(arc.log_inertia**2)) / PRIOR_SIGMA**2
+    return wide + float(off @ held.information @ off)
 
 
-def _cost(evidence: Evidence, arc: Arc) -> float:
+def _cost(evidence: Evidence, arc: Arc, held: Prior) -> float:
     """Chi-square with the prior, infinite where no body is looked for."""
     with np.errstate(over="ignore", invalid="ignore"):
         if not np.linalg.norm(arc.log_inertia) < _WIDEST:
             return np.inf
-        cost = evidence.chi2(*along(arc, evidence.times)) + _prior(arc)
+        cost = evidence.chi2(*along(arc, evidence.times)) + _prior(arc, held)
     return cost if np.isfinite(cost) else np.inf
 
 

@@ -13,12 +13,14 @@ from debrisest.batch.arc import course
 from debrisest.batch.attitudes import Attitudes
 from debrisest.batch.free_points import FreePoints
 from debrisest.batch.local_rates import local_rates
-from debrisest.batch.motion import Motion
+from debrisest.batch.motion import Motion, Status
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.rates import Rates
-from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, pairs
+from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, odd_points, pairs
 from debrisest.batch.solve import Solution, solve
 from debrisest.batch.tracks import Tracks, tracks
+
+_FEWEST_LEFT = 4  # points of a known body, once some were left out
 
 
 def estimate_from_points(
@@ -35,19 +37,24 @@ def estimate_from_points(
     typical = noise_of(found) if sigma is None else _typical(points, sigma)
     if not np.isfinite(typical):
         typical = 1.0
-    kept = largest_rigid_set(found, typical)
+    scale = float(np.nanmax([typical, noise_of(found)]))
+    kept = largest_rigid_set(found, scale)
     tracked = tracks(times, points, typical if sigma is None else sigma)
     tracked = tracked.without(~kept)
     tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
     unit = typical if sigma is None else 1.0
+    whole, tracked = tracked, tracked.without(odd_points(tracked, found, scale))
+    tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
     if model is not None:
-        known = KnownPoints(tracked, model)
-        return _with_points(solve(known, times, sigma is not None), plain, tracked, unit)
+        solution = _model_in_doubt(
+            solve(KnownPoints(tracked, model), times, sigma is not None), plain
+        )
+        return _with_points(solution, plain, whole, unit)
     cloud = align_clouds(tracked)
     all_points = FreePoints(tracked, cloud.model)
     joined = cloud.tracks.seen.any(axis=0)
     wider = None if np.array_equal(joined, tracked.seen.any(axis=0)) else all_points
-    return _with_points(solve(cloud, times, sigma is not None, wider), plain, tracked, unit)
+    return _with_points(solve(cloud, times, sigma is not None, wider), plain, whole, unit)
 
 
 def estimate_from_attitudes(times: Array, q: Array, sigma: Array | float | None = None) -> Motion:
@@ -80,6 +87,19 @@ def estimate_from_rates(times: Array, rate: Array, sigma: Array | float | None =
         unit = _noise_of_windows(evidence)
         evidence = evidence.scaled(unit)
     return _without_points(solve(evidence, times, sigma is not None), times, unit)
+
+
+def _model_in_doubt(solution: Solution, plain: Tracks) -> Solution:
+    """Return the solution; not accepted where too few points are left to say which were wrong."""
+    together = plain.within(plain.seen.sum(axis=1) >= 2).seen.any(axis=0)
+    assert isinstance(solution.evidence, KnownPoints)
+    left = solution.evidence.tracks.seen.any(axis=0)
+    few = left.sum() < min(_FEWEST_LEFT, together.sum())
+    return (
+        solution._replace(status=Status.MODEL_IN_DOUBT)
+        if few and solution.status.accepted
+        else solution
+    )
 
 
 def _typical(points: Array, sigma: Array | float) -> float:

@@ -83,6 +83,9 @@ class Evidence(Protocol):
     def seen(self) -> Seen:
         """Return attitudes of single epochs."""
 
+    def squares(self, q: Array, rate: Array) -> Array:
+        """Return the normalised square of each measurement (three numbers), NaN if not seen."""
+
     def gated(self, q: Array, rate: Array, limit: float) -> Self:
         """Return it without measurements whose normalised square exceeds ``limit``."""
 

@@ -103,6 +103,10 @@ class FreePoints:
         """Return attitudes of single epochs, from the points where they are."""
         return self.known.seen()
 
+    def squares(self, q: Array, rate: Array) -> Array:
+        """Return squares of the residuals (time, feature), the points at their best."""
+        return self.settled(q).known.squares(q, rate)
+
     def gated(self, q: Array, rate: Array, limit: float) -> Self:
         """Return it without points off by more than ``limit`` (three degrees of freedom)."""
         kept = self.settled(q).known.gated(q, rate, limit)

@@ -17,6 +17,7 @@ _FEWEST_EPOCHS = 5
 _MOST_WINDOWS = 200
 _FEWEST_WINDOWS = 12
 _REWEIGHTINGS = 3
+_CLEAN = 0.3  # of the windows, at least, without outliers
 
 
 class Local(NamedTuple):
@@ -33,7 +34,7 @@ class Local(NamedTuple):
     covariance: Array
     """Of the rate (window, 3, 3)."""
     noise: float
-    """Median root of chi2/dof: the factor by which the noise exceeds what was said."""
+    """Root of chi2/dof of clean windows: the factor by which the noise exceeds what was said."""
 
 
 def local_rates(times: Array, seen: Seen) -> Local | None:
@@ -87,7 +88,9 @@ def _fits(times: Array, q: Array, information: Array, half: float) -> Local | No
     if not fits:
         return None
     time, attitude, rate, covariance, excess = (np.array(part) for part in zip(*fits))
-    return Local(time, half, attitude, rate, covariance, float(np.sqrt(np.median(excess))))
+    return Local(
+        time, half, attitude, rate, covariance, float(np.sqrt(np.quantile(excess, _CLEAN)))
+    )
 
 
 def _both_sides(times: Array, middle: float, half: float) -> bool:

@@ -6,7 +6,8 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray
 from debrisest.batch.acceptance import Fit
-from debrisest.batch.arc import Arc
+from debrisest.batch.arc import INERTIA, Arc
+from debrisest.batch.descent import PRIOR_SIGMA
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.local_rates import Local
 from debrisest.batch.path import Path, path_of, unknown_path
@@ -21,21 +22,31 @@ class Status(Outcome):
     ACCEPTED_IN_PART = (
         1,
         "torque-free motion explains the data: attitude and rate hold, but the motion does not "
-        "show all of the inertia (a steady spin or a body of equal moments never does); use only "
-        "the directions whose sigma is small",
+        "show all of the inertia (a slow or almost steady one does not); use only the directions "
+        "whose sigma is small",
+    )
+    WITHOUT_INERTIA = (
+        2,
+        "the body turns steadily about one axis, as far as the noise shows: attitude and rate "
+        "hold, of the inertia nothing is shown",
     )
     UNTESTED = (
-        2,
+        3,
         "torque-free motion fits, but the data are too few to test it: more epochs, or more points "
         "at an epoch, would decide",
     )
+    MODEL_IN_DOUBT = (
+        4,
+        "the known points do not fit each other, and the data cannot tell which of them is "
+        "elsewhere: check their places, or estimate with unknown points",
+    )
     NOT_TORQUE_FREE = (
-        3,
+        5,
         "no torque-free motion explains the data beyond the stated times: attitude and rate are "
         "from a smoother that assumes no law of motion, and no inertia is claimed",
     )
     TOO_FEW = (
-        4,
+        6,
         "too few data for a motion: it takes six epochs, close enough in time that the body turns "
         "less than a quarter turn between them, each with an attitude or three points not in line",
     )
@@ -43,7 +54,7 @@ class Status(Outcome):
     @property
     def accepted(self) -> bool:
         """Whether torque-free motion has been tested and holds."""
-        return self <= Status.ACCEPTED_IN_PART
+        return self <= Status.WITHOUT_INERTIA
 
 
 class Judged(Outcome):
@@ -74,7 +85,8 @@ class Motion(NamedTuple):
     """At all epochs given."""
     arc: Arc | None
     covariance: Array
-    """Of the errors of the arc's unknowns (11, 11), NaN without an arc."""
+    """Of the errors of the arc's unknowns (11, 11), NaN without an arc. That of the inertia is a
+    claim only where the status is `ACCEPTED` or `ACCEPTED_IN_PART`, see `claimed`."""
     fit: Fit | None
     holds: tuple[float, float]
     """Times, s, over which the best torque-free arc explains the data."""
@@ -93,6 +105,16 @@ class Motion(NamedTuple):
     evidence: Evidence | None
     local: Local | None
     wander: Wander | None
+
+    @property
+    def claimed(self) -> Array:
+        """Covariance (11, 11) of what is claimed: the prior's of an inertia that is not shown."""
+        if self.status in (Status.ACCEPTED, Status.ACCEPTED_IN_PART):
+            return self.covariance
+        result = self.covariance.copy()
+        result[INERTIA], result[:, INERTIA] = 0.0, 0.0
+        result[INERTIA, INERTIA] = PRIOR_SIGMA**2 * np.eye(5)
+        return result
 
     def at(self, times: Array) -> Path:
         """Return the motion at any ``times (time,)``, s, increasing, with covariances."""

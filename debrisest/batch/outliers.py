@@ -22,9 +22,12 @@ _FEWEST_POINTS = 4
 _GATES = (60.0, 25.0)
 
 
-def without_biased_points(growth: Growth) -> Growth:
-    """Return the fit without points whose mean residual is off; of a known body only."""
-    evidence = growth.evidence
+def without_biased_points(growth: Growth) -> tuple[Growth, bool]:
+    """Return the fit without points whose mean residual is off, and whether these are certain.
+
+    They are not if leaving out another point would do as well. Of a known body only.
+    """
+    evidence, certain = growth.evidence, True
     while isinstance(evidence, KnownPoints):
         bias = mean_residuals(evidence, growth.found.arc)
         present = int(np.sum(evidence.tracks.weight.any(axis=0)))
@@ -33,7 +36,8 @@ def without_biased_points(growth: Growth) -> Growth:
         suspects = np.argsort(-bias)[:_SUSPECTS]
         trials = [_refitted(growth, evidence, int(suspect)) for suspect in suspects]
         growth, evidence, _ = min(trials, key=lambda trial: trial[2])
-    return growth
+        certain = certain and sum(trial[2] < _LIMIT for trial in trials) <= 1
+    return growth, certain
 
 
 def mean_residuals(evidence: KnownPoints, arc: Arc) -> Array:

@@ -106,18 +106,22 @@ class KnownPoints:
         """
         kept: Self = self
         for _ in range(4):
-            worst = kept._worst(q, limit)
+            worst = kept._worst(q, rate, limit)
             if not worst.any():
                 break
             kept = type(self)(kept.tracks.without(worst), self.model)
         few = kept.tracks.seen.sum() < _FEWEST_KEPT * self.tracks.seen.sum()
         return self if few else kept
 
-    def _worst(self, q: Array, limit: float) -> BoolArray:
+    def squares(self, q: Array, rate: Array) -> Array:
+        """Return squares of the residuals (time, feature) over what the noise lets expect."""
         weight = self.tracks.weight
         share = weight / np.maximum(weight.sum(axis=1, keepdims=True), np.finfo(float).tiny)
         own = np.maximum(1.0 - share, _LEAST_SHARE)
-        square = np.nan_to_num(np.sum(self.residuals(q) ** 2, axis=-1) * weight / own)
+        return np.asarray(np.sum(self.residuals(q) ** 2, axis=-1) * weight / own)
+
+    def _worst(self, q: Array, rate: Array, limit: float) -> BoolArray:
+        square = np.nan_to_num(self.squares(q, rate))
         return np.asarray((square > limit) & (square == square.max(axis=1, keepdims=True)))
 
     def scaled(self, noise: float) -> Self:

@@ -69,6 +69,10 @@ class Rates:
         typical = np.median(step) if len(step) else 1.0
         return Seen(q, self.information / typical**2)
 
+    def squares(self, q: Array, rate: Array) -> Array:
+        """Return the chi-square of each epoch (time,), NaN where nothing counts."""
+        return np.where(self.dof > 0.0, self.told(q, rate).chi2, np.nan)
+
     def gated(self, q: Array, rate: Array, limit: float) -> Self:
         """Return it without rates off by more than ``limit``, unless half would go."""
         kept = self.told(q, rate).chi2 <= limit

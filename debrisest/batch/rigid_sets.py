@@ -11,12 +11,15 @@ _TO_SIGMA = 1.4826  # from the median deviation of Gaussian noise
 _RIGID_SHARE = 0.2  # of all pairs, at least so many are rigid
 _FEWEST_COMMON = 4
 _LOOSE, _SPREAD = 1.5, 4.0  # limit of a pair's noise, and how it widens with few epochs
+_ODD = 6.0  # sigmas of a distance
 _AGREED = 0.8  # of the members that a point was seen with
 
 
 class Pairs(NamedTuple):
     """Distances of pairs of points, each (feature, feature)."""
 
+    length: Array
+    """Median distance, m, or that of the known body."""
     noise: Array
     """Standard deviation of one point along the line, m, robust, NaN where seldom seen together."""
     common: Array
@@ -26,7 +29,8 @@ class Pairs(NamedTuple):
 def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
     """Return how constant the distances are: about their median, or those of a known body."""
     features = tracks.weight.shape[1]
-    noise, common = np.full((features, features), np.nan), np.zeros((features, features))
+    length, noise = np.full((2, features, features), np.nan)
+    common = np.zeros((features, features))
     for i in range(features):
         both = tracks.seen[:, i, None] & tracks.seen
         distance = np.linalg.norm(tracks.points - tracks.points[:, i, None], axis=-1)
@@ -36,9 +40,10 @@ def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
         middle = np.nanmedian(shown, axis=0)
         if model is not None:
             middle = np.linalg.norm(model - model[i], axis=-1)[enough]
+        length[i, enough] = middle
         deviation = np.abs(shown - middle)
         noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * np.nanmedian(deviation, axis=0)
-    return Pairs(noise, common)
+    return Pairs(length, noise, common)
 
 
 def noise_of(found: Pairs) -> float:
@@ -63,6 +68,25 @@ def largest_rigid_set(found: Pairs, sigma: float) -> BoolArray:
         if members.sum() > best.sum():
             best = members
     return best
+
+
+def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
+    """Return observations (time, feature) at odd distances from most others of their epoch.
+
+    So wrong matches are told before any motion is known, also two that are swapped.
+    """
+    odd = np.zeros(tracks.seen.shape, dtype=bool)
+    for _ in range(2):
+        seen = tracks.seen & ~odd
+        asked, agreed = np.zeros((2, *seen.shape))
+        for i in range(seen.shape[1]):
+            distance = np.linalg.norm(tracks.points - tracks.points[:, i, None], axis=-1)
+            votes = seen & seen[:, i, None] & np.isfinite(found.length[i])
+            asked[:, i] = votes.sum(axis=1)
+            close = np.abs(distance - found.length[i]) < _ODD * np.sqrt(2.0) * sigma
+            agreed[:, i] = np.sum(votes & close, axis=1)
+        odd |= seen & (agreed < 0.5 * asked)
+    return odd
 
 
 def _grown(votes: Array, seed: int) -> BoolArray:

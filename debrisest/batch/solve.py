@@ -7,6 +7,7 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.batch.acceptance import Fit, tested
 from debrisest.batch.arc import Arc, along
+from debrisest.batch.curvature import with_curvature
 from debrisest.batch.descent import covariance, descend
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.lasting_errors import with_lasting_errors
@@ -17,6 +18,7 @@ from debrisest.batch.outliers import without_biased_points
 from debrisest.batch.path import Path, path_of, unknown_path
 from debrisest.batch.search import search
 from debrisest.batch.smoother import Wander, smooth, wander
+from debrisest.batch.steady import turns_steadily
 from debrisest.batch.windows import Growth, widened
 
 _GATE = 25.0
@@ -52,12 +54,13 @@ def solve(
     growth = search(evidence, local)
     if growth.whole and growth.fit.steady and wider is not None:
         growth = widened(growth, wider)
+    certain = True
     if growth.whole:
-        growth = without_biased_points(growth)
+        growth, certain = without_biased_points(growth)
     solution = _torque_free(growth, local, times, noise_known)
     if solution is None:
         return _any_motion(evidence, local, growth, times, noise_known)
-    return solution
+    return solution if certain else solution._replace(status=Status.MODEL_IN_DOUBT)
 
 
 def _torque_free(growth: Growth, local: Local, times: Array, noise_known: bool) -> Solution | None:
@@ -70,9 +73,12 @@ def _torque_free(growth: Growth, local: Local, times: Array, noise_known: bool) 
     scaled = evidence.scaled(noise)
     found = descend(scaled, growth.found.arc, 10)
     spread = covariance(found.hold, evidence.unknowns_fixed)
+    spread = with_curvature(scaled, found.arc, spread)
     if not possible(found.arc, spread):
         return None
     status = Status.ACCEPTED_IN_PART if lost_directions(spread) else Status.ACCEPTED
+    if turns_steadily(scaled, found):
+        status = Status.WITHOUT_INERTIA
     if fit.dof < _FEWEST_DOF:
         status = Status.UNTESTED
     settled = scaled.settled(along(found.arc, scaled.times)[0])

@@ -14,7 +14,10 @@ _LEAST_GROWTH = 0.25  # of the window's length, to each side
 _WILD = 2.0  # chi2/dof of a window, in units of the noise, that has gone wrong
 _WIDER = 1.2  # by how much chi2/dof may grow with more points
 _GATE = 25.0  # normalised square, three degrees of freedom: once in 60 000 points
-_FIRST_GATE = 60.0
+_ROUNDS = 4
+_TAME, _WILD_SHARE = 0.8, 4.0  # share of a prediction's squares, and how many times it is wild
+_MEDIAN = 2.37  # of a chi-square of three
+_UNUSUAL = 2.0  # median square above which outliers have drawn the fit, and the gate opens
 
 AnyEvidence = TypeVar("AnyEvidence", bound=Evidence)
 
@@ -62,17 +65,27 @@ def widened(growth: Growth, wider: Evidence) -> Growth:
 
 def _fitted(window: AnyEvidence, arc: Arc, gates: bool) -> tuple[Descent, AnyEvidence]:
     """Return the fit of a window, first with all points, then without outliers."""
-    found = descend(window, arc, 12)
-    kept = window
     if not gates:
-        return found, kept
-    for limit in (_FIRST_GATE, _GATE):
-        gated = window.gated(*along(found.arc, window.times), limit)
-        if np.array_equal(gated.dof, kept.dof):
-            continue
+        return descend(window, arc, 12), window
+    kept = _without_wild(window, arc)
+    found = descend(kept, arc, 12)
+    for _ in range(_ROUNDS):
+        q, rate = along(found.arc, window.times)
+        usual = float(np.nanmedian(window.squares(q, rate))) / _MEDIAN
+        limit = _GATE * max(1.0, usual / _UNUSUAL)
+        gated = window.gated(q, rate, limit)
+        if limit == _GATE and np.array_equal(gated.dof, kept.dof):
+            break
         kept = gated
         found = descend(kept, found.arc, 12)
     return found, kept
+
+
+def _without_wild(window: AnyEvidence, arc: Arc) -> AnyEvidence:
+    """Return a window less what is far from the prediction, by the prediction's own errors."""
+    predicted = along(arc, window.times)
+    usual = float(np.nanquantile(window.squares(*predicted), _TAME))
+    return window.gated(*predicted, _GATE + _WILD_SHARE * usual)
 
 
 def _wider(evidence: Evidence, found: Descent, low: float, high: float) -> tuple[float, float]:

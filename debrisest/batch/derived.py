@@ -1,0 +1,148 @@
+"""What people ask of a tumbling body, from the unknowns of its arc, each with its sigma.
+
+All that depends on principal axes is undefined where two moments are too close for the data to
+tell them apart: such numbers are NaN, and the sigma of the axis says why.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.attitude import quaternion
+from debrisest.batch.arc import INERTIA, UNKNOWNS, Arc, displaced
+from debrisest.batch.observability import lost_directions
+from debrisest.dynamics import log_inertia
+from debrisest.dynamics.nutation import nutation
+
+_LOOSEST_AXIS = np.radians(10.0)
+_LOOSEST_SHARE = 0.5  # sigma of a number over itself
+_SIDES = ((1, 2), (2, 0), (0, 1))  # about which a principal axis pair turns
+_STEP = 1e-6
+_LEAST_GAP = 1e-12
+
+
+class Quantity(NamedTuple):
+    """A number or some, with standard deviations; NaN where the data leave it undefined."""
+
+    value: Array
+    sigma: Array
+
+
+class Derived(NamedTuple):
+    """Quantities that follow from an arc, angles in rad."""
+
+    axes: Quantity
+    """Principal axes as columns in ``f`` (3, 3), moments ascending; the sigma (3,) of each axis is
+    that of its direction."""
+    moments: Quantity
+    """Principal moments over the largest (3,), ascending."""
+    axis_rates: Quantity
+    """Rates about the principal axes at the arc's epoch (3,), rad/s."""
+    momentum: Quantity
+    """Direction of the angular momentum, inertial (3,); the sigma is an angle."""
+    spin_axis: Quantity
+    """Direction of the rate in ``f`` at the epoch (3,); the sigma is an angle."""
+    speed: Quantity
+    """Rate at the epoch, rad/s."""
+    nutation_angle: Quantity
+    """Between the angular momentum and the axis it circles in the body, at the epoch."""
+    nutation_period: Quantity
+    """After which the rate in the body is the same again, s."""
+
+
+def derived(arc: Arc, covariance: Array) -> Derived:
+    """Return what follows from an arc and the covariance (11, 11) of its unknowns."""
+    tensor = log_inertia.inertia(arc.log_inertia)
+    moments, axes = np.linalg.eigh(tensor)
+    axes = axes * np.sign(np.linalg.det(axes))
+    tilt = _axis_sigmas(moments, axes, covariance)
+    lost = lost_directions(covariance) > 0
+    vague = (tilt > _LOOSEST_AXIS) | (lost & (tilt > 0.1 * _LOOSEST_AXIS))
+    shares, share_sigma = _spread(arc, covariance, _shares)
+    rates, rate_sigma = _spread(arc, covariance, lambda moved: _axis_rates(moved, axes))
+    nutates, nutate_sigma = _spread(arc, covariance, _nutation)
+    shown = share_sigma < _LOOSEST_SHARE * np.abs(shares)
+    unsure = ~(nutate_sigma < _LOOSEST_SHARE * np.abs(nutates))
+    return Derived(
+        Quantity(np.where(vague, np.nan, axes), tilt),
+        Quantity(np.where(shown & ~lost, shares, np.nan), share_sigma),
+        Quantity(np.where(vague, np.nan, rates), rate_sigma),
+        _direction(arc, covariance, _momentum),
+        _direction(arc, covariance, lambda moved: moved.rate),
+        Quantity(*_spread(arc, covariance, _speed)),
+        Quantity(np.where(unsure, np.nan, nutates)[:1], nutate_sigma[:1]),
+        Quantity(np.where(unsure, np.nan, nutates)[1:], nutate_sigma[1:]),
+    )
+
+
+def _spread(arc: Arc, covariance: Array, of: Callable[[Arc], Array]) -> tuple[Array, Array]:
+    """Return a function of the arc and its standard deviations, by central differences."""
+    derivative = np.stack(
+        [
+            (of(displaced(arc, step)) - of(displaced(arc, -step))) / (2.0 * _STEP)
+            for step in _STEP * np.eye(UNKNOWNS)
+        ],
+        axis=-1,
+    )
+    variance = np.sum((derivative @ covariance) * derivative, axis=-1)
+    return of(arc), np.sqrt(np.maximum(variance, 0.0))
+
+
+def _direction(arc: Arc, covariance: Array, of: Callable[[Arc], Array]) -> Quantity:
+    """Return a unit vector and the angle by which it may be off, NaN if that is large."""
+
+    def unit(moved: Arc) -> Array:
+        vector = of(moved)
+        return np.asarray(vector / max(float(np.linalg.norm(vector)), 1e-300))
+
+    value, sigma = _spread(arc, covariance, unit)
+    angle = np.array([np.linalg.norm(sigma)])
+    return Quantity(value if angle[0] < _LOOSEST_AXIS else np.full(3, np.nan), angle)
+
+
+def _axis_sigmas(moments: Array, axes: Array, covariance: Array) -> Array:
+    """Standard deviations (3,) of the directions of the principal axes, rad.
+
+    In the axes, a change ``dS`` of the log-inertia turns axes i and j by ``dS_ij / (l_j - l_i)``.
+    """
+    turned = axes.T @ log_inertia.BASIS @ axes
+    logs = np.log(moments)
+    variance = np.zeros(3)
+    for i, j in _SIDES:
+        change = turned[:, i, j] / max(abs(logs[j] - logs[i]), _LEAST_GAP)
+        turn = change @ covariance[INERTIA, INERTIA] @ change
+        variance[[i, j]] += turn
+    return np.asarray(np.sqrt(variance))
+
+
+def _shares(arc: Arc) -> Array:
+    moments = np.linalg.eigvalsh(log_inertia.inertia(arc.log_inertia))
+    return np.asarray(moments / moments[-1])
+
+
+def _axis_rates(arc: Arc, near: Array) -> Array:
+    """Rates about the principal axes, with the signs of axes that are near to given ones."""
+    _, axes = np.linalg.eigh(log_inertia.inertia(arc.log_inertia))
+    signs = np.sign(np.sum(axes * near, axis=0))
+    return np.asarray((axes * signs).T @ arc.rate)
+
+
+def _speed(arc: Arc) -> Array:
+    return np.array([np.linalg.norm(arc.rate)])
+
+
+def _momentum(arc: Arc) -> Array:
+    body = log_inertia.inertia(arc.log_inertia) @ arc.rate
+    return quaternion.rotate(arc.q, body)
+
+
+def _nutation(arc: Arc) -> Array:
+    """Angle between the momentum and the circled axis, rad, and the period, s."""
+    moments, axes = np.linalg.eigh(log_inertia.inertia(arc.log_inertia))
+    rate = axes.T @ arc.rate
+    motion = nutation(rate, moments)
+    momentum = moments * rate
+    circled = np.abs(momentum[motion.order[0]]) / max(float(np.linalg.norm(momentum)), 1e-300)
+    return np.array([np.arccos(np.clip(circled, 0.0, 1.0)), 2.0 * motion.period[0]])

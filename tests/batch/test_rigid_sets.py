@@ -1,0 +1,43 @@
+"""Which points keep their distances."""
+
+import numpy as np
+
+from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, odd_points, pairs
+from debrisest.batch.tracks import tracks
+
+
+def rigid(tumbling, seed, sigma=0.02):
+    return tumbling.points(np.random.default_rng(seed), sigma)
+
+
+def test_noise_is_found_without_a_model(tumbling) -> None:
+    found = pairs(tracks(tumbling.times, rigid(tumbling, 0), 1.0))
+    assert abs(noise_of(found) / 0.02 - 1.0) < 0.15
+
+
+def test_a_drifting_point_is_not_of_the_body(tumbling) -> None:
+    points = rigid(tumbling, 1)
+    points[:, 3] += 0.005 * tumbling.times[:, None]
+    found = pairs(tracks(tumbling.times, points, 0.02))
+    assert largest_rigid_set(found, noise_of(found)).tolist() == [True] * 3 + [False] + [True] * 4
+
+
+def test_distances_of_a_known_body_tell_a_point_elsewhere(tumbling, box) -> None:
+    model = box.copy()
+    model[2] += [0.0, 0.4, 0.4]
+    found = pairs(tracks(tumbling.times, rigid(tumbling, 2), 0.02), model)
+    assert np.flatnonzero(~largest_rigid_set(found, 0.02)).tolist() == [2]
+
+
+def test_swapped_points_are_odd(tumbling) -> None:
+    """The distance of a swapped pair is right; those to all others are not."""
+    points = rigid(tumbling, 3)
+    seen = np.isfinite(points[..., 0])
+    several = np.flatnonzero(seen.sum(axis=1) >= 5)[::7]
+    odd = np.zeros(seen.shape, dtype=bool)
+    for k in several:
+        first, second = np.flatnonzero(seen[k])[:2]
+        points[k, [first, second]] = points[k, [second, first]]
+        odd[k, [first, second]] = True
+    tracked = tracks(tumbling.times, points, 0.02)
+    assert np.array_equal(odd_points(tracked, pairs(tracked), 0.02), odd)
