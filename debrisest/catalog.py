@@ -15,6 +15,8 @@ from debrisest.parts.filters.kalman import Extended, Unscented
 from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkBound, LandmarkFilter
 from debrisest.parts.filters.replay import Efficient, Replay
 from debrisest.parts.recoveries.basis_pursuit import BasisPursuit
+from debrisest.parts.recoveries.direction_cosines import DirectionCosines
+from debrisest.parts.recoveries.line_spectrum import LineSpectrumRecovery
 from debrisest.parts.sensors.camera_range import CameraRange
 from debrisest.parts.sensors.detections import Detections
 from debrisest.parts.sensors.feature_points import FeaturePoints
@@ -66,7 +68,7 @@ CATALOG: dict[str, list[type[Part]]] = {
         CameraRange,
         ShapeGuess,
     ],
-    "recovery": [BasisPursuit],
+    "recovery": [BasisPursuit, DirectionCosines, LineSpectrumRecovery],
     "problem": [
         TumblingAttitude,
         TumblingPoints,

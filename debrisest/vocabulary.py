@@ -192,6 +192,7 @@ VOCABULARY: dict[str, Quantity] = {
     "sign": Quantity(("run", "piece_number"), "1", "sign given to each piece"),
     "objective": Quantity(("run", "quaternion"), "1", "objective of each component's recovery"),
     "iterations": Quantity(("run", "quaternion"), "1", "iterations of each component's recovery"),
+    "lines": Quantity(_RUN, "1", "lines of the recovered spectrum", "1"),
     # filter
     "q_ib": Quantity(_TIME_QUATERNION, "1", "estimated attitude of principal axes"),
     "q_ib_sigma": Quantity(_TIME_QUATERNION, "1", "1-sigma of q_ib"),
@@ -268,6 +269,10 @@ VOCABULARY: dict[str, Quantity] = {
     "relabeling": Quantity(("run", "row", "column"), "1", "estimated to true principal axes"),
     "recovered_pitch": Quantity(_TIME, "rad", "pitch error of the recovered attitude", "deg"),
     "recovered_attitude": Quantity(_TIME, "rad", "angle error of the recovered attitude", "deg"),
+    "observed_pitch": Quantity(_RUN, "rad", "RMS of recovered_pitch where observed", "deg"),
+    "observed_attitude": Quantity(_RUN, "rad", "RMS of recovered_attitude where observed", "deg"),
+    "gap_pitch": Quantity(_RUN, "rad", "RMS of recovered_pitch inside the gaps", "deg"),
+    "gap_attitude": Quantity(_RUN, "rad", "RMS of recovered_attitude inside the gaps", "deg"),
     "coverage": Quantity(_RUN, "1", "share of epochs with an attitude", "1"),
     "pieces": Quantity(_RUN, "1", "pieces of uninterrupted samples", "1"),
     "signs_right": Quantity(_RUN, "1", "share of sign decisions that were right", "1"),
