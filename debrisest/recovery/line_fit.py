@@ -28,6 +28,16 @@ class Signals(NamedTuple):
         """Return some of the runs."""
         return Signals(self.samples[runs], self.weight[runs])
 
+    @property
+    def epochs(self) -> IntArray:
+        """Return how many epochs are observed (run)."""
+        return np.asarray(np.sum(self.weight > 0, axis=-1))
+
+    @property
+    def energy(self) -> Array:
+        """Return the weighted sum of squares (run)."""
+        return np.asarray(np.sum(self.samples**2 * self.weight[..., None], axis=(-2, -1)))
+
 
 class LineFit(NamedTuple):
     """The best amplitudes at some frequencies, and the equations of the next step."""
@@ -87,7 +97,7 @@ def refine_lines(
     a run is finished when its step is below `tolerance` times that.
     """
     longest = np.pi / signals.samples.shape[1]
-    fit = fit_lines(signals, frequency)
+    fit = fit_lines(signals, frequency.copy())
     damping = np.full(len(frequency), _FIRST_DAMPING)
     active = np.arange(len(frequency))
     for _ in range(iterations):

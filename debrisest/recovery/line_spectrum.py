@@ -36,11 +36,11 @@ class LineStatus(Outcome):
         "stopped at the most lines: allow more, or recover by basis pursuit if they never suffice",
     )
     NOT_WHITE = (
-        3,
+        2,
         "what is left is no white noise: the motion is not a sum of few sines, recover by basis "
         "pursuit",
     )
-    NO_SAMPLE = 2, "no sample observed: nothing to recover from, the signal is zero"
+    NO_SAMPLE = 3, "no sample observed: nothing to recover from, the signal is zero"
 
 
 class LineSpectrum(NamedTuple):
@@ -63,11 +63,10 @@ def line_spectrum(samples: Array, weight: Array | None = None, most: int = 30) -
     frequencies) ln N with N the number of samples. A run does not depend on the others.
     """
     signals = _signals(samples, np.ones(samples.shape[:-1]) if weight is None else weight)
-    epochs = np.sum(signals.weight > 0, axis=-1)
-    room = np.minimum(most, (epochs - 1) // 3)
-    status = np.where(epochs > 0, LineStatus.LINE_LIMIT, LineStatus.NO_SAMPLE)
+    room = np.minimum(most, (signals.epochs - 1) // 3)
+    status = np.where(signals.epochs > 0, LineStatus.LINE_LIMIT, LineStatus.NO_SAMPLE)
     found = LineSpectrum(np.zeros(samples.shape), np.full((len(samples), most), np.nan), status)
-    active = np.flatnonzero(epochs)
+    active = np.flatnonzero(signals.epochs)
     fit = fit_lines(signals.take(active), np.empty((active.size, 0)))
     _keep(found, active, fit)
     for count in range(1, most + 1):
@@ -103,10 +102,9 @@ def _one_line_more(signals: Signals, fit: LineFit) -> LineFit:
 
 def _criterion(signals: Signals, fit: LineFit) -> Array:
     """Return what the best number of lines has the least of (run)."""
-    energy = np.sum(signals.samples**2 * signals.weight[..., None], axis=(-2, -1))
-    count = np.sum(signals.weight > 0, axis=-1) * signals.samples.shape[-1]
+    count = signals.epochs * signals.samples.shape[-1]
     unknowns = fit.amplitude[0].size + 3 * fit.frequency.shape[-1]
-    cost = np.maximum(fit.cost, _PRECISION * energy + np.finfo(float).tiny)
+    cost = np.maximum(fit.cost, _PRECISION * signals.energy + np.finfo(float).tiny)
     return np.asarray(count * np.log(cost) + unknowns * np.log(count))
 
 
@@ -115,15 +113,12 @@ def _is_white(signals: Signals, found: Array) -> BoolArray:
 
     The components of an epoch count as one number: their noise may be the same.
     """
-    weighted = signals.weight[..., None]
-    residual = (signals.samples - found) * weighted**0.5
-    pairs = np.sum(weighted[:, 1:, 0] * weighted[:, :-1, 0] > 0, axis=-1)
+    left = signals._replace(samples=signals.samples - found)
+    residual = left.samples * left.weight[..., None] ** 0.5
     product = np.sum(residual[:, 1:] * residual[:, :-1], axis=(-2, -1))
-    square = np.sum(residual**2, axis=(-2, -1))
-    energy = np.sum(signals.samples**2 * weighted, axis=(-2, -1))
-    epochs = np.sum(signals.weight > 0, axis=-1)
-    limit = _DEVIATIONS * square * np.sqrt(pairs) / np.maximum(epochs, 1)
-    return np.asarray((product <= limit) | (square <= _PRECISION * energy))
+    pairs = np.sum(left.weight[:, 1:] * left.weight[:, :-1] > 0, axis=-1)
+    limit = _DEVIATIONS * left.energy * np.sqrt(pairs) / np.maximum(left.epochs, 1)
+    return np.asarray((product <= limit) | (left.energy <= _PRECISION * signals.energy))
 
 
 def _keep(found: LineSpectrum, runs: IntArray, fit: LineFit) -> None:
