@@ -15,6 +15,8 @@ from debrisest.parts.filters.kalman import Extended, Unscented
 from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
 from debrisest.parts.filters.replay import Replay
 from debrisest.parts.recoveries.basis_pursuit import BasisPursuit
+from debrisest.parts.recoveries.direction_cosines import DirectionCosines
+from debrisest.parts.recoveries.line_spectrum import LineSpectrumRecovery
 from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
 from debrisest.parts.sensors.attitude_knowledge import AttitudeKnowledge
 from debrisest.parts.sensors.camera_range import CameraRange
@@ -76,7 +78,7 @@ CATALOG: dict[str, list[type[Part]]] = {
     ],
     "measured": [Datasets],
     "starts": [DrawnPose, DrawnOrbit, DrawnShape, GivenGuess],
-    "recovery": [BasisPursuit],
+    "recovery": [BasisPursuit, DirectionCosines, LineSpectrumRecovery],
     "problem": [
         TumblingAttitude,
         TumblingPoints,

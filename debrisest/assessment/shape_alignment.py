@@ -8,6 +8,7 @@ this rotation are free of that choice of axes (gauge).
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.attitude.rotation import nearest_rotation
 
 _FLAT = 1e-12
 """Ratio of singular values below which points are in line."""
@@ -22,10 +23,9 @@ def best_rotation(estimated: Array, true: Array) -> Array:
     known = np.isfinite(estimated + true).all(-1, keepdims=True)
     left = np.where(known, true, 0.0)
     right = np.where(known, estimated, 0.0)
-    u, scale, v = np.linalg.svd(np.swapaxes(left, -1, -2) @ right)
-    u[..., -1] *= np.linalg.det(u @ v)[..., None]
+    rotation, scale = nearest_rotation(np.swapaxes(left, -1, -2) @ right)
     definite = scale[..., 1] > _FLAT * scale[..., 0]
-    return np.where(definite[..., None, None], u @ v, np.nan)
+    return np.where(definite[..., None, None], rotation, np.nan)
 
 
 def rms_distance(estimated: Array, true: Array) -> Array:

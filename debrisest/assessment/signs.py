@@ -3,7 +3,7 @@
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.recovery.pieces import continuous
+from debrisest.recovery.pieces import continuous, signs_of_pieces
 
 
 def signs_right(raw: Array, piece: Array, sign: Array, true: Array) -> Array:
@@ -17,12 +17,7 @@ def signs_right(raw: Array, piece: Array, sign: Array, true: Array) -> Array:
     if not sign.shape[-1]:
         return np.ones(len(sign))
     smooth = continuous(true, np.zeros(piece.shape, dtype=np.int64))
-    against_truth = np.sum(raw * smooth, axis=-1)
-    numbers = np.arange(sign.shape[-1])
-    agreement = np.stack(
-        [np.nansum(np.where(piece == n, against_truth, 0.0), axis=-1) for n in numbers], axis=-1
-    )
-    wanted = np.where(agreement < 0, -1.0, 1.0)
+    wanted = signs_of_pieces(raw, smooth, piece, sign.shape[-1])
     decided = np.isfinite(sign[..., 1:]) & np.isfinite(sign[..., :-1])
     given, true_turn = sign[..., 1:] * sign[..., :-1], wanted[..., 1:] * wanted[..., :-1]
     decisions = decided.sum(axis=-1)

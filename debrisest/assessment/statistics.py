@@ -66,6 +66,13 @@ STATISTICS: dict[str, Statistic] = {
 }
 
 
+def rms_where(chosen: BoolArray, error: Array) -> Array:
+    """Return the root mean square (run,) over the chosen epochs (run, time), NaN where is none."""
+    count = chosen.sum(axis=-1)
+    total = np.sum(error**2, axis=-1, where=chosen)
+    return np.asarray(np.sqrt(total / np.where(count > 0, count, np.nan)))
+
+
 def per_dimension(square: Array, dof: Array) -> Array:
     """Return a normalised square over its degrees of freedom, NaN where there is none."""
     counted = np.where(dof > 0, dof, np.nan)

@@ -8,6 +8,7 @@ inertial axes from any origin, NaN where a feature is not seen. Both estimates a
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.attitude.rotation import nearest_rotation
 
 _COLLINEAR = 1e-5  # ratio of a set's width to its length below which it is a line
 
@@ -37,12 +38,32 @@ def wahba(model: Array, measured: Array) -> Array:
     """Least-squares attitude from all features seen (centred Kabsch, a proper rotation)."""
     seen = _seen(measured)[..., None]
     count = np.sum(seen, axis=-2, keepdims=True)
-    mean = np.sum(measured, axis=-2, keepdims=True, where=seen) / np.maximum(count, 1)
-    correlation = np.swapaxes(np.where(seen, measured - mean, 0.0), -1, -2) @ model
-    left, scale, right = np.linalg.svd(correlation)
-    left[..., -1] *= np.linalg.det(left @ right)[..., None]
+    correlation = np.swapaxes(_centred(measured, seen), -1, -2) @ model
+    attitude, scale = nearest_rotation(correlation)
     enough = (count[..., 0, 0] >= 3) & (scale[..., 1] > _COLLINEAR**2 * scale[..., 0])
-    return np.where(enough[..., None, None], left @ right, np.nan)
+    return np.where(enough[..., None, None], attitude, np.nan)
+
+
+def wahba_information(model: Array, measured: Array) -> Array:
+    """Inverse of the variance ``(...)`` of `wahba`, summed over the axes, for noise of 1 m.
+
+    In m^2 per rad^2. The covariance of the rotation vector is that of the Kabsch problem,
+    ``(tr F - F)^-1`` with ``F`` the sum of ``f f^T`` over the features seen, from their mean. Zero
+    where they are in line, or none.
+    """
+    seen = _seen(measured)[..., None]
+    feature = _centred(np.broadcast_to(model, measured.shape), seen)
+    spread = np.linalg.eigvalsh(np.swapaxes(feature, -1, -2) @ feature)
+    lever = np.maximum(np.sum(spread, axis=-1, keepdims=True) - spread, 0.0)
+    with np.errstate(divide="ignore"):
+        return np.asarray(1.0 / np.sum(1.0 / lever, axis=-1))
+
+
+def _centred(points: Array, seen: BoolArray) -> Array:
+    """Points from the mean of those seen, zero for the others."""
+    count = np.sum(seen, axis=-2, keepdims=True)
+    mean = np.sum(points, axis=-2, keepdims=True, where=seen) / np.maximum(count, 1)
+    return np.where(seen, points - mean, 0.0)
 
 
 def _seen(measured: Array) -> BoolArray:

@@ -46,18 +46,36 @@ def multiplicity(length: int) -> Array:
     return count
 
 
-def l1_norm(coefficients: ComplexArray, length: int) -> Array:
-    """Sum (...) of the moduli over the full spectrum of half spectra (..., length // 2 + 1)."""
-    total: Array = np.abs(coefficients) @ multiplicity(length)
-    return total
+def l1_norm(coefficients: ComplexArray, length: int, *, joint: bool = False) -> Array:
+    """Sum (...) of the moduli over the full spectrum of half spectra (..., length // 2 + 1).
+
+    Jointly, a line's modulus is the 2-norm over the components (..., component, line).
+    """
+    total: Array = _moduli(coefficients, joint) @ multiplicity(length)
+    return total[..., 0] if joint else total
 
 
 def soft_threshold(
-    coefficients: ComplexArray, threshold: float, out: ComplexArray | None = None
+    coefficients: ComplexArray,
+    threshold: float,
+    out: ComplexArray | None = None,
+    *,
+    joint: bool = False,
 ) -> ComplexArray:
-    """Coefficients with moduli reduced by `threshold` > 0, exactly zero where they are below."""
-    factor = np.abs(coefficients)
+    """Coefficients with moduli reduced by `threshold` > 0, exactly zero where they are below.
+
+    Jointly, a line's modulus is the 2-norm over the components (..., component, line).
+    """
+    factor = _moduli(coefficients, joint)
     np.maximum(factor, threshold, out=factor)
     np.divide(-threshold, factor, out=factor)
     factor += 1.0
     return np.multiply(coefficients, factor, out=out)
+
+
+def _moduli(coefficients: ComplexArray, joint: bool) -> Array:
+    """Moduli, jointly with an axis of length 1 in the place of the components."""
+    moduli: Array = np.abs(coefficients)
+    if joint and coefficients.shape[-2] > 1:
+        moduli = np.sqrt(np.sum(moduli * moduli, axis=-2, keepdims=True))
+    return moduli

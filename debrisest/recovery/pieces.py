@@ -32,6 +32,18 @@ def continuous(q: Array, piece: IntArray) -> Array:
     return q * (sign * _at_start(sign, piece))[..., None]
 
 
+def signs_of_pieces(q: Array, smooth: Array, piece: Array | IntArray, count: int) -> Array:
+    """Sign (..., count) of the pieces of `q` (..., time, 4) against a continuous `smooth`.
+
+    That of the sum of their dot products over each piece; NaN for pieces that a signal lacks.
+    `piece` (..., time) is negative or NaN where nothing is observed.
+    """
+    product = np.nan_to_num(np.sum(q * smooth, axis=-1))
+    member = piece[..., None] == np.arange(count)
+    total = np.einsum("...tp,...t->...p", member, product)
+    return np.where(member.any(axis=-2), np.where(total < 0, -1.0, 1.0), np.nan)
+
+
 def _starts(observed: BoolArray) -> BoolArray:
     """Epochs that are observed while the one before is not."""
     starts = observed.copy()

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from debrisest.arrays import Array
-from debrisest.attitude.points import features_frame, triad, wahba
+from debrisest.attitude.points import features_frame, triad, wahba, wahba_information
 
 seeds = st.integers(0, 2**32 - 1)
 METHODS = [triad, wahba]
@@ -113,3 +113,24 @@ def test_features_frame_is_right_handed_and_moves_with_the_points(seed) -> None:
     assert np.linalg.det(frame) == pytest.approx(1.0)
     np.testing.assert_allclose(features_frame(measured), attitude @ frame, atol=1e-9)
     assert np.isnan(features_frame(np.outer([0.0, 1.0, 2.0], first))).any()
+
+
+@pytest.mark.parametrize("seen", [[0, 1, 2], [0, 1, 3, 5], [0, 1, 2, 3, 4, 5]])
+def test_information_of_the_least_squares_attitude_is_that_of_its_errors(seen) -> None:
+    """Sum of the variances about the three axes, over 4000 noisy attitudes."""
+    rng = np.random.default_rng(12)
+    model, attitude, measured = scene(3, epochs=1)
+    measured[:, [k for k in range(6) if k not in seen]] = np.nan
+    noisy = measured + 0.01 * rng.standard_normal((4000, 6, 3))
+    turns = Rotation.from_matrix(np.swapaxes(attitude, -1, -2) @ wahba(model, noisy))
+    square = turns.magnitude() ** 2 / 0.01**2
+    expected = 1.0 / wahba_information(model, measured)[0]
+    assert abs(square.mean() - expected) < 5 * square.std() / 4000**0.5
+
+
+def test_features_in_line_or_hidden_tell_nothing() -> None:
+    model, _, measured = scene(5, epochs=3)
+    measured[0] = np.nan
+    measured[1, 1:] = np.nan
+    measured[2, 2:] = np.nan
+    np.testing.assert_allclose(wahba_information(model, measured), 0.0, atol=1e-12)

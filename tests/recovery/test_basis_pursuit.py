@@ -248,3 +248,51 @@ def test_too_few_atoms_are_refused():
     samples, observed = problem(3)
     with pytest.raises(ValueError, match="23 atoms are too few for 24 samples"):
         basis_pursuit(samples, observed, 23, 0.3)
+
+
+def joint_problem(seed):
+    """Three noisy components with their lines in common, each with its own gaps."""
+    parts = [problem(seed), problem(seed), problem(seed)]
+    rng = np.random.default_rng(seed + 1)
+    samples = np.stack([scale * part[0] for scale, part in zip((1.0, 0.3, -0.6), parts)])
+    observed = np.stack([part[1] for part in parts]) & (rng.random((3, 24)) < 0.9)
+    return samples + 0.05 * rng.standard_normal((3, 24)), observed
+
+
+@settings(max_examples=10, deadline=None)
+@given(seeds, st.sampled_from([24, 48, 53]), st.floats(0.3, 3.0))
+def test_optimality_conditions_of_the_joint_lasso(seed, length, penalty):
+    """A line is used by all components or by none; the group has the modulus that one line has."""
+    samples, observed = joint_problem(seed)
+    solution = basis_pursuit(samples, observed, length, penalty, joint=True, **TIGHT)
+    v = np.stack([full_spectrum(half, length) for half in solution.coefficients])
+    atoms = dictionary(24, length)
+    misfit = np.where(observed, np.nan_to_num(samples) - np.real(v @ atoms.T), 0.0)
+    slope = misfit @ atoms.conj()
+    size = np.linalg.norm(v, axis=0)
+    used = size > 0
+    assert (solution.status == RecoveryStatus.CONVERGED).all()
+    assert np.linalg.norm(slope, axis=0).max() <= penalty * (1 + 1e-6)
+    np.testing.assert_allclose(
+        slope[:, used], penalty * v[:, used] / size[used], atol=1e-4 * penalty
+    )
+    objective = 0.5 * np.sum(misfit**2) + penalty * size.sum()
+    np.testing.assert_allclose(solution.objective, objective, rtol=1e-9)
+
+
+def test_one_component_is_jointly_what_it_is_alone():
+    samples, observed = problem(4)
+    alone = basis_pursuit(samples, observed, 48, 0.3)
+    jointly = basis_pursuit(samples[None], observed[None], 48, 0.3, joint=True)
+    np.testing.assert_array_equal(jointly.coefficients[0], alone.coefficients)
+
+
+def test_joint_groups_do_not_depend_on_each_other_and_keep_their_batch_axes():
+    groups = [joint_problem(seed) for seed in range(6)]
+    samples, observed = (np.stack(x).reshape(2, 3, 3, 24) for x in zip(*groups))
+    together = basis_pursuit(samples, observed, 48, 0.6, joint=True)
+    assert together.objective.shape == together.iterations.shape == (2, 3, 3)
+    for group, (values, seen) in zip(np.ndindex(2, 3), groups):
+        alone = basis_pursuit(values, seen, 48, 0.6, joint=True)
+        np.testing.assert_allclose(together.signal[group], alone.signal, atol=1e-12)
+        assert (together.iterations[group] == alone.iterations).all()
