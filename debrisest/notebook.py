@@ -10,8 +10,8 @@ import pandas as pd
 
 from debrisest.errors import UserError
 from debrisest.plugins.load import load_plugins, read_plugins
-from debrisest.run.plan import Selection, check_selection, plan
-from debrisest.run.sweep import Machine, bring_up_to_date
+from debrisest.runner.plan import Selection, check_selection, plan
+from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.scenario.schema import ScenarioFile, scenario_model
 from debrisest.shipped import scenario_path
@@ -31,7 +31,7 @@ def load(
     return load_scenario(scenario_path(Path(config)), overrides, own_parts)
 
 
-def sweep(
+def run(
     scenario: LoadedScenario | str | Path,
     out: str | Path = "results",
     *,

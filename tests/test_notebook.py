@@ -30,9 +30,9 @@ def test_the_guide(
 
 
 def test_the_tables_are_those_of_the_command(small: Path, tmp_path: Path, reference: Path) -> None:
-    rows = debrisest.sweep(small, tmp_path / "out", estimators=["wahba"])
+    rows = debrisest.run(small, tmp_path / "out", estimators=["wahba"])
     assert set(rows["estimator"]) == {"wahba"}
-    debrisest.sweep(debrisest.load(small), tmp_path / "out")
+    debrisest.run(debrisest.load(small), tmp_path / "out")
     ours, theirs = (out / "small" / "tables.csv" for out in (tmp_path / "out", reference))
     assert ours.read_bytes() == theirs.read_bytes()
 
@@ -47,7 +47,7 @@ def test_a_name_that_nothing_has(tmp_path: Path, small: Path) -> None:
     with pytest.raises(debrisest.UserError, match="did you mean first_steps"):
         debrisest.load("first_step")
     with pytest.raises(debrisest.UserError, match="did you mean wahba"):
-        debrisest.sweep(small, tmp_path, estimators=["wabha"])
+        debrisest.run(small, tmp_path, estimators=["wabha"])
     with pytest.raises(AttributeError, match="no attribute 'swep'"):
         _ = debrisest.swep
 
@@ -75,7 +75,7 @@ def test_plug_ins_stay_for_the_session(small: Path, tmp_path: Path) -> None:
         "if __name__ == '__main__':\n"
         f"    debrisest.load({str(small)!r}, plugins=[{str(plugin)!r}])\n"
         f"    scenario = debrisest.load({str(small)!r})\n"
-        "    rows = debrisest.sweep(scenario, runs=1, cases=['slow'], jobs=2)\n"
+        "    rows = debrisest.run(scenario, runs=1, cases=['slow'], jobs=2)\n"
         "    print(rows['failed'].sum(), len(rows) > 0)\n"
     )
     (script := tmp_path / "script.py").write_text(code)

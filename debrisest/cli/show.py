@@ -26,7 +26,7 @@ from debrisest.cli.options import (
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from debrisest.run.plan import Selection
+    from debrisest.runner.plan import Selection
     from debrisest.scenario.load import LoadedScenario
 
 
@@ -59,7 +59,7 @@ def plot(
     quiet: Unprinted = False,
 ) -> None:
     """Draw the figures of the results that are up to date, as PNG and SVG."""
-    from debrisest.run.plan import plan
+    from debrisest.runner.plan import plan
     from debrisest.show.plots.draw import draw_all
 
     scenarios = load_all(configs, settings, plugins)
@@ -84,7 +84,7 @@ def status(
     """Tell which results are there, what is out of date and why, and how the runs ended."""
     from debrisest.results.open import find_results
     from debrisest.results.overview import overview
-    from debrisest.run.plan import plan
+    from debrisest.runner.plan import plan
 
     scenarios = load_all(configs, settings, plugins)
     selection = select(scenarios, runs, case, estimator)
@@ -104,7 +104,7 @@ def show_tables(
     check: bool,
 ) -> bool:
     """Write all tables, print them in a format; return whether a verdict is not as expected."""
-    from debrisest.run.plan import Selection, plan
+    from debrisest.runner.plan import Selection, plan
     from debrisest.show.tables.cells import unexpected
     from debrisest.show.tables.render import render_all
     from debrisest.show.tables.tabulate import chosen, tabulate, write_tables

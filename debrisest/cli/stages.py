@@ -28,8 +28,8 @@ from debrisest.cli.options import (
 from debrisest.cli.show import show_tables
 
 if TYPE_CHECKING:
-    from debrisest.run.plan import Selection
-    from debrisest.run.sweep import Machine
+    from debrisest.runner.plan import Selection
+    from debrisest.runner.sweep import Machine
     from debrisest.scenario.load import LoadedScenario
 
 
@@ -87,7 +87,7 @@ def sweep(
 
 
 def _machine(jobs: int | None, cluster: str | None, quiet: bool) -> "Machine":
-    from debrisest.run.sweep import Machine
+    from debrisest.runner.sweep import Machine
 
     return Machine(jobs or os.cpu_count() or 1, cluster, quiet)
 
@@ -100,8 +100,8 @@ def _bring(
     dry_run: bool,
 ) -> bool:
     """Run what has a reason to, or tell it; return whether a run gave no result."""
-    from debrisest.run.plan import plan
-    from debrisest.run.sweep import bring_up_to_date
+    from debrisest.runner.plan import plan
+    from debrisest.runner.sweep import bring_up_to_date
 
     if dry_run:
         steps = [step for scenario in scenarios for step in plan(scenario, out, selection)]

@@ -12,8 +12,8 @@ import pytest
 from debrisest.errors import UserError
 from debrisest.plugins.load import load_plugins, read_plugins
 from debrisest.results import store
-from debrisest.run.execute import run_step
-from debrisest.run.plan import Selection, plan
+from debrisest.runner.execute import run_step
+from debrisest.runner.plan import Selection, plan
 from debrisest.scenario.load import load_scenario
 
 

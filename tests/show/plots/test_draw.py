@@ -16,8 +16,8 @@ from debrisest.results.assessed import Result, assessed
 from debrisest.results.open import find_results
 from debrisest.results.results import Results
 from debrisest.results.status import Wanted, up_to_date
-from debrisest.run.execute import _attributes
-from debrisest.run.plan import Selection, Step, plan
+from debrisest.runner.execute import _attributes
+from debrisest.runner.plan import Selection, Step, plan
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.show.plots.draw import FIGURES, Kind, draw_all
 from debrisest.show.plots.gather import all_runs, single_runs
@@ -275,7 +275,7 @@ def test_a_run_whose_filter_diverged_is_said_so(scenario: LoadedScenario, tmp_pa
 
 def test_drawing_is_loaded_only_where_it_is_needed() -> None:
     script = (
-        "import sys, debrisest.cli, debrisest.run.sweep\n"
+        "import sys, debrisest.cli, debrisest.runner.sweep\n"
         "assert 'matplotlib' not in sys.modules\n"
         "import debrisest.show.plots.draw\n"
         "assert 'matplotlib.pyplot' not in sys.modules\n"

@@ -19,9 +19,9 @@ import numpy as np
 
 from debrisest.arrays import Data
 from debrisest.results import store
-from debrisest.run.plan import Step
-from debrisest.run.stages.isolate import isolate
-from debrisest.run.stages.pipeline import STAGES
+from debrisest.runner.plan import Step
+from debrisest.runner.stages.isolate import isolate
+from debrisest.runner.stages.pipeline import STAGES
 from debrisest.vocabulary import VOCABULARY
 
 
@@ -76,7 +76,7 @@ def executor(jobs: int, address: str | None = None) -> Iterator[tuple[Executor, 
     It is this process, a pool of ``jobs`` spawned ones, or a dask cluster.
     """
     if address is not None:
-        from debrisest.run.cluster import dask_executor
+        from debrisest.runner.cluster import dask_executor
 
         with dask_executor(address) as cluster:
             yield cluster

@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Data
 from debrisest.assessment.consistency import chart_free
 from debrisest.assessment.statistics import per_dimension
-from debrisest.run.stages.reason import about
+from debrisest.runner.stages.reason import about
 from debrisest.scenario.case import Case
 
 VERSION = 2

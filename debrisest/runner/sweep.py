@@ -7,9 +7,9 @@ from pathlib import Path
 from debrisest.errors import UserError
 from debrisest.files import remove_leftovers
 from debrisest.results.open import find_results
-from debrisest.run.execute import execute, executor
-from debrisest.run.plan import Selection, Step, plan
-from debrisest.run.progress import Progress, progress
+from debrisest.runner.execute import execute, executor
+from debrisest.runner.plan import Selection, Step, plan
+from debrisest.runner.progress import Progress, progress
 from debrisest.scenario.load import LoadedScenario
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Data
 from debrisest.clock import Clock
 from debrisest.roles import Given
-from debrisest.run.stages.reason import about
+from debrisest.runner.stages.reason import about
 from debrisest.scenario.case import Case
 
 VERSION = 1

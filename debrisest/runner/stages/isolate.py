@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from debrisest.arrays import Data
-from debrisest.run.stages.reason import reason
+from debrisest.runner.stages.reason import reason
 from debrisest.vocabulary import has_runs
 
 MACHINE_FAILURES = (MemoryError, OSError)

@@ -12,7 +12,7 @@ from debrisest.results import store
 from debrisest.results.address import Address
 from debrisest.results.assessed import SIMULATED
 from debrisest.results.status import Wanted, out_of_date
-from debrisest.run.stages.pipeline import STAGES, stages_of
+from debrisest.runner.stages.pipeline import STAGES, stages_of
 from debrisest.scenario.case import Case
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import allowed_names

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from debrisest.run.stages.assess import diagnostics
+from debrisest.runner.stages.assess import diagnostics
 from debrisest.vocabulary import VOCABULARY
 
 RUNS, EPOCHS = 2, 4

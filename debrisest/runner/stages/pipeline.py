@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from debrisest.arrays import Data
-from debrisest.run.stages import assess, filter, recover, simulate
+from debrisest.runner.stages import assess, filter, recover, simulate
 from debrisest.scenario.case import Case
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from debrisest.arrays import Data
 from debrisest.clock import Clock
-from debrisest.run.stages.reason import about
+from debrisest.runner.stages.reason import about
 from debrisest.scenario.case import Case
 
 VERSION = 1
