@@ -10,6 +10,7 @@ from debrisest.parts.filters.association import (
     JointAssociation,
     KnownAssociation,
 )
+from debrisest.parts.filters.batch import Batch
 from debrisest.parts.filters.bound import Efficient, LandmarkBound, LinearisedAtTruth
 from debrisest.parts.filters.kalman import Extended, Unscented
 from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
@@ -52,6 +53,7 @@ from debrisest.problems.camera_range.redundant import CameraRangeRedundant
 from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels
 from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditive
 from debrisest.problems.tumbling.attitude import TumblingAttitude
+from debrisest.problems.tumbling.motion import TumblingMotion
 from debrisest.problems.tumbling.points import TumblingPoints
 from debrisest.roles import Part
 
@@ -82,6 +84,7 @@ CATALOG: dict[str, list[type[Part]]] = {
     "problem": [
         TumblingAttitude,
         TumblingPoints,
+        TumblingMotion,
         StereoPoseAdditive,
         StereoPose,
         CameraRangeRedundant,
@@ -90,6 +93,7 @@ CATALOG: dict[str, list[type[Part]]] = {
     ],
     "start": [FirstSamples, FirstPoints, Guess, FirstImage],
     "filter": [
+        Batch,
         Unscented,
         Extended,
         Replay,
