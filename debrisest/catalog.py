@@ -20,6 +20,7 @@ from debrisest.parts.recoveries.direction_cosines import DirectionCosines
 from debrisest.parts.recoveries.line_spectrum import LineSpectrumRecovery
 from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
 from debrisest.parts.sensors.attitude_knowledge import AttitudeKnowledge
+from debrisest.parts.sensors.attitude_sensor import AttitudeSensor
 from debrisest.parts.sensors.camera_range import CameraRange
 from debrisest.parts.sensors.detections import Detections
 from debrisest.parts.sensors.feature_points import FeaturePoints
@@ -75,6 +76,7 @@ CATALOG: dict[str, list[type[Part]]] = {
         PinholeCamera,
         PointingControl,
         AttitudeKnowledge,
+        AttitudeSensor,
         Detections,
         CameraRange,
     ],

@@ -29,7 +29,11 @@ class InFeatureFrame(ProblemPart):
         names = ("q_bf", "rate_b", "moments_b")
         derivative = rate_by_errors({name: data[name][:, kept] for name in names})
         covariance = derivative @ data["covariance"] @ np.swapaxes(derivative, -1, -2)
-        return scores(data, scored, covariance)
+        return scores(self.in_true_frame(data), scored, covariance)
+
+    def in_true_frame(self, data: Data) -> Data:
+        """Return the data with ``q_bf`` from the true feature frame, by default the estimate's."""
+        return data
 
     def truth(self, data: Data) -> Array | None:
         """Return the true states (run, time, 12)."""

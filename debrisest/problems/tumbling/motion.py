@@ -88,10 +88,12 @@ class TumblingMotion(InFeatureFrame):
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors in true principal axes, if known; unknown geometry leaves a frame free."""
         counted = ("accepted", "fit", "lost_directions", "rejected_share")
-        figures = {name: data[name] for name in counted}
-        if self.measured == "points" and self.geometry == "unknown" and "true_q_ib" in data:
-            data = in_true_frame(data)
-        return figures | super().assess(data, scored)
+        return {name: data[name] for name in counted} | super().assess(data, scored)
+
+    def in_true_frame(self, data: Data) -> Data:
+        """Return the data with ``q_bf`` from the true feature frame."""
+        free = self.measured == "points" and self.geometry == "unknown"
+        return in_true_frame(data) if free and "true_q_ib" in data else data
 
 
 def _from_points(known: bool, data: Data, times: Array, run: int) -> Motion:
