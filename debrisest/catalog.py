@@ -10,6 +10,7 @@ from debrisest.parts.filters.association import (
     JointAssociation,
     KnownAssociation,
 )
+from debrisest.parts.filters.batch import Batch
 from debrisest.parts.filters.bound import Efficient, LandmarkBound, LinearisedAtTruth
 from debrisest.parts.filters.kalman import Extended, Unscented
 from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
@@ -19,6 +20,7 @@ from debrisest.parts.recoveries.direction_cosines import DirectionCosines
 from debrisest.parts.recoveries.line_spectrum import LineSpectrumRecovery
 from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
 from debrisest.parts.sensors.attitude_knowledge import AttitudeKnowledge
+from debrisest.parts.sensors.attitude_sensor import AttitudeSensor
 from debrisest.parts.sensors.camera_range import CameraRange
 from debrisest.parts.sensors.detections import Detections
 from debrisest.parts.sensors.feature_points import FeaturePoints
@@ -52,6 +54,7 @@ from debrisest.problems.camera_range.redundant import CameraRangeRedundant
 from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels
 from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditive
 from debrisest.problems.tumbling.attitude import TumblingAttitude
+from debrisest.problems.tumbling.motion import TumblingMotion
 from debrisest.problems.tumbling.points import TumblingPoints
 from debrisest.roles import Part
 
@@ -73,6 +76,7 @@ CATALOG: dict[str, list[type[Part]]] = {
         PinholeCamera,
         PointingControl,
         AttitudeKnowledge,
+        AttitudeSensor,
         Detections,
         CameraRange,
     ],
@@ -82,6 +86,7 @@ CATALOG: dict[str, list[type[Part]]] = {
     "problem": [
         TumblingAttitude,
         TumblingPoints,
+        TumblingMotion,
         StereoPoseAdditive,
         StereoPose,
         CameraRangeRedundant,
@@ -90,6 +95,7 @@ CATALOG: dict[str, list[type[Part]]] = {
     ],
     "start": [FirstSamples, FirstPoints, Guess, FirstImage],
     "filter": [
+        Batch,
         Unscented,
         Extended,
         Replay,

@@ -180,7 +180,7 @@ class Given(NamedTuple):
     """What a filter is given beside its model."""
 
     state: Array
-    """Initial state, (run, n)."""
+    """Initial state, (run, n); (run, 0) for a filter that makes its own start."""
     covariance: Array
     """Of its errors, (run, n_e, n_e)."""
     measured: Array
@@ -234,9 +234,9 @@ class ProblemPart(Part):
     def model(self, data: Data, clock: Clock) -> Any:
         """Return process and measurement as functions of the state, as the filters know them."""
 
-    @abstractmethod
     def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, n) and covariance (run, n, n)."""
+        raise ValueError("this problem takes no first guess")
 
     @abstractmethod
     def unpack(self, filtered: Estimates) -> Data:
@@ -258,6 +258,8 @@ class FilterPart(Part):
     """The kind of model that it takes."""
     needs_truth: ClassVar[bool] = False
     """Whether it is linearised at the truth, as bounds are."""
+    makes_start: ClassVar[bool] = False
+    """Whether it begins with the measurements alone, so that an estimator has no start."""
 
     @property
     def uses_truth(self) -> bool:

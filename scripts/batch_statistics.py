@@ -316,7 +316,8 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--cases", type=int, default=2, help="seeds of each published case")
     given = parser.parse_args()
-    report_cases(given.cases)
+    if given.cases:
+        report_cases(given.cases)
     for series in given.series:
         report(series, given.runs, given.seed)
 

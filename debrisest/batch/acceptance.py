@@ -16,6 +16,7 @@ from debrisest.batch.evidence import Evidence, Told
 
 _BLOCKS = 20
 _SIGMAS = 5.0  # of the chi-square distribution
+LEAST_NOISE = 0.1  # chi2/dof below which what lasts is measured against the given noise
 _NOISE_AS_SAID = 1.1  # chi2/dof, noise is seldom known better than to five per cent
 
 
@@ -65,7 +66,7 @@ def tested(evidence: Evidence, arc: Arc) -> Fit:
     count = owner.max() + 1
     turned = told if evidence.of_rate else _in_body(told, q)
     values = [_offsets(part, owner, count) for part in (told, turned)]
-    worst = max(values, key=lambda value: float(value.sum())) / excess
+    worst = max(values, key=lambda value: float(value.sum())) / max(excess, LEAST_NOISE)
     dof_blocks = max(3.0 * count - fitted, 3.0)
     limit = 1.0 + _SIGMAS * np.sqrt(2.0 / dof_blocks)
     offset = float(worst.sum()) / dof_blocks

@@ -5,6 +5,8 @@ other unknowns move with the square of the way along it, which no second derivat
 tells. So the floor is followed, one sigma to both sides, and the bend is added.
 """
 
+from itertools import combinations
+
 import numpy as np
 
 from debrisest.arrays import Array
@@ -20,22 +22,37 @@ _FOURTH_MOMENT = 3.0  # of a Gaussian: mean square of a square
 
 
 def with_curvature(evidence: Evidence, arc: Arc, covariance: Array) -> Array:
-    """Return the covariance (11, 11) with the bends of wide directions added."""
+    """Return the covariance (11, 11) with the bends of wide directions, and of pairs, added."""
     result = covariance.copy()
-    sigma, directions = inertia_directions(covariance)
-    for width, direction in zip(sigma, directions.T):
-        if width > _WIDE:
-            slope = covariance[:, INERTIA] @ direction / width
-            ways = [_valley(evidence, arc, sign * slope, direction, width) for sign in (1.0, -1.0)]
-            bend = 0.5 * (ways[0] + ways[1])
-            result += _FOURTH_MOMENT * np.outer(bend, bend)
+    sigma, _ = inertia_directions(covariance)
+    wide = np.flatnonzero(sigma > _WIDE)
+    for way in np.eye(5)[wide]:
+        bend = _bend(evidence, arc, covariance, way)
+        result += _FOURTH_MOMENT * np.outer(bend, bend)
+    for first, second in combinations(np.eye(5)[wide], 2):
+        ahead, across = (
+            _bend(evidence, arc, covariance, first + sign * second) for sign in (1.0, -1.0)
+        )
+        result += 0.25 * np.outer(ahead - across, ahead - across)
     return result
 
 
-def _valley(evidence: Evidence, arc: Arc, step: Array, direction: Array, width: float) -> Array:
+def _bend(evidence: Evidence, arc: Arc, covariance: Array, way: Array) -> Array:
+    """Return the mean shift (11,) of the valley's floor at both ends of a way, from the middle.
+
+    ``way (5,)``: how many sigmas along each direction of the inertia; it is held where not zero.
+    """
+    sigma, directions = inertia_directions(covariance)
+    along = directions[:, way != 0.0]
+    step = covariance[:, INERTIA] @ along @ (way / sigma)[way != 0.0]
+    firm = (along / (_FIRM * sigma[way != 0.0]) ** 2) @ along.T
+    ends = [_floor(evidence, arc, sign * step, firm) for sign in (1.0, -1.0)]
+    return 0.5 * (ends[0] + ends[1])
+
+
+def _floor(evidence: Evidence, arc: Arc, step: Array, firm: Array) -> Array:
     """Return how the unknowns (11) have moved where the inertia is held off by ``step``."""
     start = displaced(arc, step)
-    firm = (_FIRM * width) ** -2 * np.outer(direction, direction)
     held = descend(evidence, start, 15, Prior(start.log_inertia, firm)).arc
     turn = quaternion.log(quaternion.multiply(held.q, quaternion.conjugate(arc.q)))
     return np.concatenate([turn, held.rate - arc.rate, held.log_inertia - arc.log_inertia])

@@ -20,6 +20,7 @@ from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, odd_points, 
 from debrisest.batch.solve import Solution, solve
 from debrisest.batch.tracks import Tracks, tracks
 
+_LEAST_NOISE = 1e-6  # rad, rad/s, or the share of a body's size, of noise that is not given
 _FEWEST_LEFT = 4  # points of a known body, once some were left out
 
 
@@ -35,7 +36,11 @@ def estimate_from_points(
     plain = tracks(times, points, 1.0)
     found = pairs(plain, model)
     typical = noise_of(found) if sigma is None else _typical(points, sigma)
-    if not np.isfinite(typical):
+    if sigma is None:
+        typical = np.nanmax(
+            [typical, _LEAST_NOISE * np.nanmax(np.abs(plain.centred()), initial=0.0)]
+        )
+    if not (np.isfinite(typical) and typical > 0.0):
         typical = 1.0
     scale = float(np.nanmax([typical, noise_of(found)]))
     kept = largest_rigid_set(found, scale)
@@ -68,7 +73,7 @@ def estimate_from_attitudes(times: Array, q: Array, sigma: Array | float | None 
     evidence = Attitudes(times[seen], quaternion.normalize(q[seen]), information[seen])
     unit = 1.0
     if sigma is None:
-        unit = _noise_of_windows(evidence)
+        unit = max(_noise_of_windows(evidence), _LEAST_NOISE)
         evidence = evidence.scaled(unit)
     return _without_points(solve(evidence, times, sigma is not None), times, unit)
 
@@ -84,7 +89,7 @@ def estimate_from_rates(times: Array, rate: Array, sigma: Array | float | None =
     evidence = Rates(times[seen], rate[seen], information[seen])
     unit = 1.0
     if sigma is None:
-        unit = _noise_of_windows(evidence)
+        unit = max(_noise_of_windows(evidence), _LEAST_NOISE)
         evidence = evidence.scaled(unit)
     return _without_points(solve(evidence, times, sigma is not None), times, unit)
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
-from debrisest.batch.acceptance import tested
+from debrisest.batch.acceptance import LEAST_NOISE, tested
 from debrisest.batch.arc import Arc, along
 from debrisest.batch.descent import descend
 from debrisest.batch.point_sums import KnownPoints
@@ -48,7 +48,7 @@ def mean_residuals(evidence: KnownPoints, arc: Arc) -> Array:
     share = weight / np.maximum(weight.sum(axis=1, keepdims=True), np.finfo(float).tiny)
     total = np.linalg.norm(np.sum(weight[..., None] * residual, axis=0), axis=-1)
     variance = np.sum(weight * (1.0 - share), axis=0)
-    excess = max(tested(evidence, arc).excess, 1e-12)
+    excess = max(tested(evidence, arc).excess, LEAST_NOISE)
     return np.asarray(total / np.sqrt(np.maximum(variance, np.finfo(float).tiny) * excess))
 
 

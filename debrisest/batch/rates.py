@@ -63,7 +63,7 @@ class Rates:
         middle = 0.5 * (self.rate[1:] + self.rate[:-1])
         turns = quaternion.exp(middle * step[:, None])
         q = np.empty((len(self.times), 4))
-        q[0] = (1.0, 0.0, 0.0, 0.0)
+        q[:1] = (1.0, 0.0, 0.0, 0.0)
         for k, turn in enumerate(turns):
             q[k + 1] = quaternion.multiply(q[k], turn)
         typical = np.median(step) if len(step) else 1.0

@@ -32,8 +32,9 @@ def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
     length, noise = np.full((2, features, features), np.nan)
     common = np.zeros((features, features))
     for i in range(features):
-        both = tracks.seen[:, i, None] & tracks.seen
-        distance = np.linalg.norm(tracks.points - tracks.points[:, i, None], axis=-1)
+        shows = tracks.seen[:, i]
+        both = tracks.seen[shows]
+        distance = np.linalg.norm(tracks.points[shows] - tracks.points[shows, i, None], axis=-1)
         common[i] = both.sum(axis=0)
         enough = (common[i] >= _FEWEST_COMMON) & (np.arange(features) != i)
         shown = np.where(both, distance, np.nan)[:, enough]
@@ -67,6 +68,8 @@ def largest_rigid_set(found: Pairs, sigma: float) -> BoolArray:
         members = _grown(votes, int(seed))
         if members.sum() > best.sum():
             best = members
+        if best.sum() > len(votes) / 2:
+            break
     return best
 
 
@@ -80,11 +83,13 @@ def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
         seen = tracks.seen & ~odd
         asked, agreed = np.zeros((2, *seen.shape))
         for i in range(seen.shape[1]):
-            distance = np.linalg.norm(tracks.points - tracks.points[:, i, None], axis=-1)
-            votes = seen & seen[:, i, None] & np.isfinite(found.length[i])
-            asked[:, i] = votes.sum(axis=1)
+            shows = seen[:, i]
+            points = tracks.points[shows]
+            distance = np.linalg.norm(points - points[:, i, None], axis=-1)
+            votes = seen[shows] & np.isfinite(found.length[i])
+            asked[shows, i] = votes.sum(axis=1)
             close = np.abs(distance - found.length[i]) < _ODD * np.sqrt(2.0) * sigma
-            agreed[:, i] = np.sum(votes & close, axis=1)
+            agreed[shows, i] = np.sum(votes & close, axis=1)
         odd |= seen & (agreed < 0.5 * asked)
     return odd
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array, IntArray
+from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import quaternion
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.local_rates import Local
@@ -73,9 +73,9 @@ def _most_likely(evidence: Evidence, local: Local, order: int) -> tuple[float, W
     for factors in (_COARSE, _FINE):
         intensity = best[1].intensity * factors
         track = _forward(evidence, local, order, intensity, evidence.times)
-        excess = np.maximum(track.misfit / dof, 1e-12)
+        excess = np.clip(track.misfit / dof, 1e-12, 1e12)
         unlikely = track.misfit / excess + dof * np.log(excess) + track.volume
-        at = int(np.nanargmin(unlikely))
+        at = int(np.argmin(np.where(np.isfinite(unlikely), unlikely, np.inf)))
         wanders = Wander(order, float(intensity[at]), float(np.sqrt(excess[at])))
         best = (float(unlikely[at]), wanders)
     return best
@@ -131,11 +131,12 @@ def _forward(
     state = _start(evidence, local, order, len(intensity))
     track = _Track([], [], [], *np.zeros((2, len(intensity))))
     for step, epoch in zip(np.diff(merged, prepend=merged[0]), epochs):
-        state, transition = _predicted(state, float(step), intensity, order)
-        track.transition.append(transition)
-        track.predicted.append(state)
-        if epoch >= 0:
-            state = _updated(evidence, int(epoch), state, track)
+        with np.errstate(all="ignore"):
+            state, transition = _predicted(state, float(step), intensity, order)
+            track.transition.append(transition)
+            track.predicted.append(state)
+            if epoch >= 0:
+                state = _updated(evidence, int(epoch), state, track)
         track.filtered.append(state)
     return track
 
@@ -176,16 +177,24 @@ def _updated(evidence: Evidence, epoch: int, state: _State, track: _Track) -> _S
     for update in range(_UPDATES):
         q, motion = state.moved(error)
         told = evidence.told(q, motion[:, :3], epoch)
-        wider = np.eye(3) + told.hold @ own
+        wider, sound = _sound(np.eye(3) + told.hold @ own)
         inverse = np.linalg.inv(wider)
         pull = told.pull + (told.hold @ error[:, part, None])[..., 0]
         step = across @ inverse @ pull[..., None]
         if update == 0:
             track.misfit[:] += told.chi2 - np.sum(told.pull * step[:, part, 0], axis=-1)
+            track.misfit[~sound] = np.inf
             track.volume[:] += np.log(np.abs(np.linalg.det(wider)))
         error = step[..., 0]
     spread = state.spread - across @ inverse @ told.hold @ np.swapaxes(across, -1, -2)
     return _State(*state.moved(error), 0.5 * (spread + np.swapaxes(spread, -1, -2)))
+
+
+def _sound(matrix: Array) -> tuple[Array, BoolArray]:
+    """Return matrices that can be inverted, and which were so: a filter may diverge."""
+    with np.errstate(all="ignore"):
+        sound = np.isfinite(matrix).all(axis=(-2, -1)) & (np.abs(np.linalg.det(matrix)) > 0.0)
+    return np.where(sound[:, None, None], matrix, np.eye(3)), sound
 
 
 def _backward(track: _Track) -> list[_State]:
@@ -193,7 +202,9 @@ def _backward(track: _Track) -> list[_State]:
     for k in range(len(track.filtered) - 2, -1, -1):
         state, ahead, after = track.filtered[k], track.predicted[k + 1], steps[-1]
         across = track.transition[k + 1] @ state.spread
-        gain = np.swapaxes(np.linalg.solve(ahead.spread, across), -1, -2)
+        scale = np.sqrt(np.diagonal(ahead.spread, 0, -2, -1))[..., None]
+        scaled = ahead.spread / scale / np.swapaxes(scale, -1, -2)
+        gain = np.swapaxes(np.linalg.solve(scaled, across / scale) / scale, -1, -2)
         turn = quaternion.log(quaternion.multiply(after.q, quaternion.conjugate(ahead.q)))
         error = np.concatenate([turn, after.motion - ahead.motion], axis=-1)
         moved = state.moved((gain @ error[..., None])[..., 0])

@@ -77,7 +77,7 @@ def _torque_free(growth: Growth, local: Local, times: Array, noise_known: bool) 
     if not possible(found.arc, spread):
         return None
     status = Status.ACCEPTED_IN_PART if lost_directions(spread) else Status.ACCEPTED
-    if turns_steadily(scaled, found):
+    if turns_steadily(scaled, found, spread):
         status = Status.WITHOUT_INERTIA
     if fit.dof < _FEWEST_DOF:
         status = Status.UNTESTED

@@ -25,11 +25,13 @@ def _estimator(case: Case, name: str, chosen: Estimator, given: set[str]) -> Fou
     if chosen.recovery is not None:
         yield from _lacks(case, (*path, "recovery"), chosen.recovery, given)
     problem, start, algorithm = chosen.problem, chosen.start, chosen.filter
-    if problem is None or start is None or algorithm is None:
+    if problem is None or algorithm is None:
         return
-    yield from _lacks(case, (*path, "start"), start, given)
+    if start is not None:
+        yield from _lacks(case, (*path, "start"), start, given)
     yield from _lacks(case, (*path, "problem"), problem, given)
-    yield from _start_that_does_not_fit((*path, "start"), start, problem, given)
+    if start is not None:
+        yield from _start_that_does_not_fit((*path, "start"), start, problem, given)
     yield from _filter_that_does_not_fit((*path, "filter"), algorithm, problem, given)
 
 

@@ -128,6 +128,10 @@ class Estimator(Keys):
     @model_validator(mode="after")
     def _complete(self) -> "Estimator":
         given = [part is not None for part in (self.problem, self.start, self.filter)]
+        if self.filter is not None and self.filter.makes_start:
+            if self.start is not None:
+                raise ValueError("this filter makes its own start; leave start out")
+            given.remove(False)
         if any(given) and not all(given):
             raise ValueError("a filter needs all three of: problem, start, filter")
         if not any(given) and self.recovery is None:

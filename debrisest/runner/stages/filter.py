@@ -27,15 +27,19 @@ def run(case: Case, estimator: str, data: Data) -> Data:
     """Return the estimates over all epochs, and what the filter says of itself."""
     chosen, clock = case.scenario.estimators[estimator], Clock(data["time_s"])
     problem, start, algorithm = chosen.problem, chosen.start, chosen.filter
-    assert problem is not None and start is not None and algorithm is not None
+    assert problem is not None and algorithm is not None
     path = f"estimators.{estimator}"
-    with about(f"{path}.start", start):
-        guess = start.start(data, clock)
+    packed = np.empty((len(data["run"]), 0)), np.empty((len(data["run"]), 0, 0))
+    if start is not None:
+        with about(f"{path}.start", start):
+            guess = start.start(data, clock)
+        with about(f"{path}.problem", problem):
+            packed = problem.pack(*guess)
     with about(f"{path}.problem", problem):
         model, measured = problem.model(data, clock), problem.measurements(data)
         known = all(name in data for name in problem.truth_needed)
         truth = problem.truth(data) if known else None
-        given = Given(*problem.pack(*guess), measured, clock, truth)
+        given = Given(*packed, measured, clock, truth)
     with about(f"{path}.filter", algorithm):
         filtered = algorithm.run(model, given)
     with about(f"{path}.problem", problem):

@@ -1,0 +1,43 @@
+"""A sensor of the target's attitude: what a pose network or a perspective solver gives."""
+
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from debrisest.arrays import Data
+from debrisest.assessment.attitude import true_feature_attitude
+from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.draws import Draws, Stream
+from debrisest.quantity import TIME, TIME_QUATERNION, Quantity
+from debrisest.roles import Positive, SimulationPart
+
+
+class AttitudeSensor(SimulationPart):
+    """Attitudes of the feature frame with a small turn about each inertial axis as their error.
+
+    Some are missing by chance, and some are wild: any attitude at all.
+    """
+
+    needs = ("true_q_ib", "true_point_b")
+    measures = ("measured_q_if", "measured_q_if_sigma")
+    declares: ClassVar[dict[str, Quantity]] = {
+        "measured_q_if": Quantity(TIME_QUATERNION, "1", "measured attitude of the feature frame"),
+        "measured_q_if_sigma": Quantity(TIME, "rad", "1-sigma of its error about each axis"),
+    }
+    kind: Literal["attitude_sensor"]
+    noise_deg: Positive
+    missing_share: Annotated[float, Field(ge=0, le=1)] = 0.0
+    wild_share: Annotated[float, Field(ge=0, le=1)] = 0.0
+
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return the attitudes (run, time, 4), NaN where one is missing, and their noise."""
+        true, sigma = true_feature_attitude(data), float(np.radians(self.noise_deg))
+        error = sigma * draws.normal(Stream.MEASUREMENT_NOISE, (true.shape[1], 3))
+        measured = quaternion.multiply(quaternion.exp(error), true)
+        chance = draws.uniform(Stream.CLUTTER, (true.shape[1], 2))
+        anything = quaternion.normalize(draws.normal(Stream.CLUTTER, (true.shape[1], 4)))
+        measured = np.where(chance[..., :1] < self.wild_share, anything, measured)
+        measured[chance[..., 1] < self.missing_share] = np.nan
+        return {"measured_q_if": measured, "measured_q_if_sigma": np.full(true.shape[:2], sigma)}

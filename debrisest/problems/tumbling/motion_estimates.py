@@ -1,0 +1,147 @@
+"""Motions of runs as the estimates of all epochs, and what follows from them at the last one."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from debrisest.arrays import Array, Data
+from debrisest.attitude import quaternion
+from debrisest.batch.arc import INERTIA, RATE, TURN, UNKNOWNS, Arc, course, moved
+from debrisest.batch.derived import derived
+from debrisest.batch.motion import Motion
+from debrisest.batch.observability import lost_directions
+from debrisest.batch.path import Path
+from debrisest.dynamics.log_inertia import BASIS
+from debrisest.filters.estimates import Estimates
+
+_TO_PLAIN = BASIS[:, [0, 1, 0, 0, 1], [0, 1, 1, 2, 2]].T
+"""The coordinates of `points_inertia` (5,) by the orthonormal ones of the batch (5,)."""
+_ALL_FIVE = 5.0
+
+
+def estimates(motions: Sequence[Motion], times: Array, kept: Sequence[int]) -> Estimates:
+    """Return the record of all runs; the covariances are those at the epochs ``kept``."""
+    states, sigmas, covariances = zip(*(_of_run(motion, times, kept) for motion in motions))
+    shape = (len(motions), len(times))
+    figures = [_figures(motion, times) for motion in motions]
+    return Estimates(
+        *(np.stack(states), np.stack(sigmas), np.stack(covariances)),
+        kept=np.array(kept, dtype=np.int64),
+        nis=np.full(shape, np.nan),
+        nis_dof=np.zeros(shape, dtype=np.int64),
+        status=np.array([_said(motion) for motion in motions]),
+        counts={name: np.stack([one[name] for one in figures]) for name in figures[0]},
+    )
+
+
+def _of_run(motion: Motion, times: Array, kept: Sequence[int]) -> tuple[Array, Array, Array]:
+    """State (time, 12), sigma (time, 11) and covariances (kept, 11, 11) in plain coordinates."""
+    path = motion.path
+    covariance = _along(motion, path)
+    inertia = np.full(5, np.nan)
+    if motion.arc is not None and motion.status.accepted:
+        inertia = _TO_PLAIN @ motion.arc.log_inertia
+    constant = np.broadcast_to(inertia, (len(times), 5))
+    state = np.concatenate([path.q, path.rate, constant], axis=-1)
+    variance = np.diagonal(covariance, 0, -2, -1)
+    sigma = np.sqrt(np.where(variance < 0.0, 0.0, variance))
+    return state, sigma, covariance[list(kept)]
+
+
+def _along(motion: Motion, path: Path) -> Array:
+    """Covariance (time, 11, 11) of attitude, rate and inertia; NaN of what is not claimed."""
+    result = np.full((len(path.times), UNKNOWNS, UNKNOWNS), np.nan)
+    result[:, TURN, TURN], result[:, RATE, RATE] = path.turn_covariance, path.rate_covariance
+    if motion.arc is None:
+        return result
+    by = _transitions(motion.arc, path.times)
+    plain = np.eye(UNKNOWNS)
+    plain[INERTIA, INERTIA] = _TO_PLAIN
+    whole = plain @ by
+    return whole @ motion.claimed @ np.swapaxes(whole, -1, -2)
+
+
+def _transitions(arc: Arc, times: Array) -> Array:
+    """Derivative (time, 11, 11) of the errors at the times by those of the arc's unknowns."""
+    motion = course(arc, times)
+    result = np.broadcast_to(np.eye(UNKNOWNS), (len(times), UNKNOWNS, UNKNOWNS)).copy()
+    result[:, TURN], result[:, RATE] = motion.turn_by, motion.rate_by
+    return result
+
+
+def _said(motion: Motion) -> str:
+    return f"{motion.status.sentence}; {motion.judged.sentence}"
+
+
+def _figures(motion: Motion, times: Array) -> Data:
+    """What a run says of itself, and what follows at the last epoch, by name."""
+    used = motion.used if motion.used.ndim == 2 else motion.used[:, None]
+    lost = lost_directions(motion.claimed) if motion.arc is not None else _ALL_FIVE
+    return {
+        "accepted": np.asarray(float(motion.status.accepted)),
+        "fit": np.asarray(motion.fit.excess if motion.fit is not None else np.nan),
+        "lost_directions": np.asarray(float(lost)),
+        "rejected_share": np.asarray(motion.rejected),
+        "noise_found": np.asarray(motion.noise),
+        "holds_from": np.asarray(motion.holds[0]),
+        "holds_until": np.asarray(motion.holds[1]),
+        "observations_used": used.sum(axis=-1).astype(np.float64),
+        **_points(motion),
+        **_at_end(motion, times),
+    }
+
+
+def _points(motion: Motion) -> Data:
+    if not len(motion.points):
+        return {}
+    return {"point_f": motion.points, "point_f_sigma": motion.points_sigma}
+
+
+def _at_end(motion: Motion, times: Array) -> Data:
+    """Speed, axes, nutation and moments at the last epoch, NaN where they are undefined."""
+    speed, speed_sigma = _speeds(motion.path)
+    result = {
+        "speed_end": speed[-1],
+        "speed_end_sigma": speed_sigma[-1],
+        "mean_speed": np.nanmean(speed) if np.isfinite(speed).any() else np.asarray(np.nan),
+        "mean_speed_sigma": _of_mean(speed_sigma),
+    } | _undefined()
+    if motion.arc is None or not motion.status.accepted:
+        return {name: np.asarray(value, dtype=np.float64) for name, value in result.items()}
+    arc = moved(motion.arc, float(times[-1]))
+    by = _transitions(motion.arc, times[-1:])[0]
+    found = derived(arc, by @ motion.claimed @ by.T)
+    result |= {
+        "spin_axis_i": quaternion.to_matrix(arc.q) @ found.spin_axis.value,
+        "spin_axis_i_sigma": found.spin_axis.sigma[0],
+        "momentum_axis_i": found.momentum.value,
+        "momentum_axis_i_sigma": found.momentum.sigma[0],
+        "nutation_angle": found.nutation_angle.value[0],
+        "nutation_angle_sigma": found.nutation_angle.sigma[0],
+        "nutation_period": found.nutation_period.value[0],
+        "nutation_period_sigma": found.nutation_period.sigma[0],
+        "moment_share": found.moments.value,
+        "moment_share_sigma": found.moments.sigma,
+    }
+    return {name: np.asarray(value, dtype=np.float64) for name, value in result.items()}
+
+
+def _undefined() -> Data:
+    one, three = np.asarray(np.nan), np.full(3, np.nan)
+    names = ("nutation_angle", "nutation_period", "spin_axis_i", "momentum_axis_i", "moment_share")
+    shapes = (one, one, three, three, three)
+    sigmas = (one, one, one, one, three)
+    return dict(zip(names, shapes)) | {f"{name}_sigma": s for name, s in zip(names, sigmas)}
+
+
+def _speeds(path: Path) -> tuple[Array, Array]:
+    """Length of the rate (time,), rad/s, and its standard deviation."""
+    speed = np.linalg.norm(path.rate, axis=-1)
+    along = path.rate / np.maximum(speed, 1e-300)[:, None]
+    variance = np.einsum("ti,tij,tj->t", along, path.rate_covariance, along)
+    return speed, np.sqrt(np.maximum(variance, 0.0))
+
+
+def _of_mean(sigma: Array) -> Array:
+    """Standard deviation of a mean whose errors may be alike at all epochs: the mean of theirs."""
+    return np.asarray(np.nanmean(sigma) if np.isfinite(sigma).any() else np.nan)
