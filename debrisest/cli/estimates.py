@@ -75,6 +75,19 @@ def estimates(
         print(f"wrote {path}: {export(there, path)} rows", file=sys.stderr)
 
 
+def estimates_of(scenarios: Sequence["LoadedScenario"], out: Path, selection: "Selection") -> str:
+    """Return the estimates of the first run at the last epoch, as text for the terminal."""
+    from debrisest.show.estimate_tables import render_estimates
+    from debrisest.show.estimates import estimates_at
+
+    found = [
+        (scenario.name, one)
+        for scenario in scenarios
+        for one in estimates_at(current_estimates(scenario, out, selection))
+    ]
+    return render_estimates(found, EstimateFormat.RICH)
+
+
 def current_estimates(scenario: "LoadedScenario", out: Path, selection: "Selection") -> "Results":
     """Return the filters' results that are up to date, of as many runs as there are.
 
