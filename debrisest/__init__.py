@@ -8,14 +8,24 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from debrisest.errors import UserError
-    from debrisest.notebook import load, run, schema
+    from debrisest.notebook import estimate, load, run, schema
     from debrisest.results.open import open_results
 
 __version__ = version = "0.1.0"
-__all__ = ["UserError", "__version__", "load", "open_results", "run", "schema", "version"]
+__all__ = [
+    "UserError",
+    "__version__",
+    "estimate",
+    "load",
+    "open_results",
+    "run",
+    "schema",
+    "version",
+]
 
 _HOME = {
     "UserError": "debrisest.errors",
+    "estimate": "debrisest.notebook",
     "load": "debrisest.notebook",
     "open_results": "debrisest.results.open",
     "schema": "debrisest.notebook",

@@ -6,9 +6,18 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
+from debrisest.batch.estimate import (
+    estimate_from_attitudes,
+    estimate_from_points,
+    estimate_from_rates,
+)
+from debrisest.batch.motion import Motion
 from debrisest.errors import UserError
+from debrisest.measurements import require_fitting
 from debrisest.plugins.load import load_plugins, read_plugins
 from debrisest.runner.plan import Selection, check_selection, plan
 from debrisest.runner.sweep import Machine, bring_up_to_date
@@ -60,6 +69,36 @@ def run(
         write_tables(scenario, Path(out), rows)
     means = scenario.common.tables.means
     return chosen(rows, partial(selection.asks_for, means=means))
+
+
+def estimate(
+    times: ArrayLike,
+    *,
+    points: ArrayLike | None = None,
+    q: ArrayLike | None = None,
+    rates: ArrayLike | None = None,
+    sigma: ArrayLike | None = None,
+    model: ArrayLike | None = None,
+) -> Motion:
+    """Return the motion of a tumbling body from one kind of measurements at ``times (time,)``, s.
+
+    ``points (time, feature, 3)``, m, in inertially fixed axes; or attitudes ``q (time, 4)``, scalar
+    first, from body to inertial axes; or ``rates (time, 3)``, rad/s, in axes fixed in the body. NaN
+    is not observed. ``sigma`` is their noise in m, rad or rad/s: one number, or one for each of
+    them; None: it is found from the data. ``model (feature, 3)``, m: places of the points in the
+    body, if known. Raises UserError for arrays that do not fit. How it ended is ``status``.
+    """
+    given = {"points": points, "q": q, "rates": rates}
+    arrays = {name: np.asarray(v, dtype=np.float64) for name, v in given.items() if v is not None}
+    epochs = np.asarray(times, dtype=np.float64)
+    noise = None if sigma is None else np.asarray(sigma, dtype=np.float64)
+    body = None if model is None else np.asarray(model, dtype=np.float64)
+    require_fitting(epochs, arrays, noise, body)
+    if "points" in arrays:
+        return estimate_from_points(epochs, arrays["points"], noise, body)
+    if "q" in arrays:
+        return estimate_from_attitudes(epochs, arrays["q"], noise)
+    return estimate_from_rates(epochs, arrays["rates"], noise)
 
 
 def schema(plugins: Iterable[str | Path] = ()) -> dict[str, Any]:

@@ -5,15 +5,18 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from debrisest.catalog import CATALOG
 from debrisest.cli import app
+from debrisest.plugins import load
 from debrisest.results import store
+from debrisest.vocabulary import VOCABULARY
 
 SCENARIOS = Path(__file__).parent / "scenarios"
 
@@ -97,6 +100,20 @@ def same_data() -> Callable:
         )
 
     return same
+
+
+@pytest.fixture
+def untouched_catalog(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Nothing that a test loads is there for the next one."""
+    for role, parts in CATALOG.items():
+        monkeypatch.setitem(CATALOG, role, parts)
+    monkeypatch.setattr(load, "_loaded", {})
+    load._load_installed.cache_clear()
+    known = dict(VOCABULARY)
+    yield
+    load._load_installed.cache_clear()
+    VOCABULARY.clear()
+    VOCABULARY.update(known)
 
 
 @pytest.fixture(scope="session")

@@ -97,6 +97,8 @@ def test_the_estimates_are_those_of_the_simulation(
     folder, case, names, _ = family
     result = sweep(folder / "measured.yaml", folder)
     assert result.exit_code == 0, result.output
+    for name in names:
+        assert f"Estimates: measured nominal, {name}, run 0, at " in result.stdout
     results = folder / "measured" / "nominal"
     assert not [name for name in store.read(results / "simulate.000000.h5") if "true" in name]
     for name in names:

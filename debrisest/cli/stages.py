@@ -52,7 +52,7 @@ def _command(last_stage: str, help: str) -> Callable[..., None]:
     ) -> None:
         scenarios = load_all(configs, settings, plugins)
         selection = select(scenarios, runs, case, estimator, last_stage, force)
-        exit_if(_bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
+        exit_if(bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
 
     command.__doc__ = help
     return command
@@ -81,7 +81,7 @@ def sweep(
     """Do everything for all cases, then write and print the tables."""
     scenarios = load_all(configs, settings, plugins)
     selection = select(scenarios, runs, case, estimator, force=force)
-    failed = _bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
+    failed = bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
     if not dry_run:
         exit_if(show_tables(scenarios, out, selection, Format.RICH, check) or failed)
 
@@ -92,7 +92,7 @@ def _machine(jobs: int | None, cluster: str | None, quiet: bool) -> "Machine":
     return Machine(jobs or os.cpu_count() or 1, cluster, quiet)
 
 
-def _bring(
+def bring(
     scenarios: Sequence["LoadedScenario"],
     out: Path,
     selection: "Selection",

@@ -40,13 +40,21 @@ def accepted(data: Data) -> bool:
 
 
 def _health(data: Data) -> str:
-    said = str(data.get("status", "")) or "the file does not say how the estimate ended"
+    status = _status(data)
+    said = status.sentence if status is not None else str(data.get("status", ""))
+    said = said or "the file does not say how the estimate ended"
     return f"{'accepted' if accepted(data) else 'NOT ACCEPTED'}: {said}"
 
 
 def _status(data: Data) -> Status | None:
     said = str(data.get("status", ""))
     return next((one for one in Status if said.startswith(one.sentence)), None)
+
+
+def _judged(data: Data) -> str:
+    """Return what is said after the status: by which tests."""
+    status, said = _status(data), str(data.get("status", ""))
+    return said.removeprefix(status.sentence).lstrip("; ") if status is not None else ""
 
 
 def _rate(data: Data) -> str:
@@ -124,7 +132,9 @@ def _points(data: Data) -> str:
 
 def _rejected(data: Data) -> str:
     share = _number(data, "rejected_share")
-    return f"{100 * share:.2g} % of the measurements" if np.isfinite(share) else ""
+    if not np.isfinite(share):
+        return ""
+    return f"{100 * share:.2g} % of the measurements" if share > 0.0 else "no measurement"
 
 
 def _torque_free(data: Data) -> str:
@@ -147,6 +157,7 @@ LINES: dict[str, Callable[[Data], str]] = {
     "points": _points,
     "rejected": _rejected,
     "torque-free": _torque_free,
+    "judged": _judged,
 }
 
 

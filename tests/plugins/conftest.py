@@ -1,30 +1,17 @@
 """The catalog as it was, after every test, and a scenario with parts from outside."""
 
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-from debrisest.catalog import CATALOG
-from debrisest.plugins import load
-from debrisest.vocabulary import VOCABULARY
 
 HERE = Path(__file__).parent
 
 
 @pytest.fixture(autouse=True)
-def untouched(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def untouched(untouched_catalog: None) -> None:
     """Nothing that a test loads is there for the next one."""
-    for role, parts in CATALOG.items():
-        monkeypatch.setitem(CATALOG, role, parts)
-    monkeypatch.setattr(load, "_loaded", {})
-    load._load_installed.cache_clear()
-    known = dict(VOCABULARY)
-    yield
-    load._load_installed.cache_clear()
-    VOCABULARY.clear()
-    VOCABULARY.update(known)
 
 
 @pytest.fixture
