@@ -52,9 +52,11 @@ def _status(data: Data) -> Status | None:
 
 
 def _judged(data: Data) -> str:
-    """Return what is said after the status: by which tests."""
+    """Return what is said after the status, by which tests; too few data are not tested."""
     status, said = _status(data), str(data.get("status", ""))
-    return said.removeprefix(status.sentence).lstrip("; ") if status is not None else ""
+    if status is None or status is Status.TOO_FEW:
+        return ""
+    return said.removeprefix(status.sentence).lstrip("; ")
 
 
 def _rate(data: Data) -> str:
