@@ -21,10 +21,10 @@ class AttitudeSensor(SimulationPart):
     """
 
     needs = ("true_q_ib", "true_point_b")
-    measures = ("measured_q_if", "measured_q_if_sigma")
+    measures = ("measured_q_if", "q_if_noise")
     declares: ClassVar[dict[str, Quantity]] = {
         "measured_q_if": Quantity(TIME_QUATERNION, "1", "measured attitude of the feature frame"),
-        "measured_q_if_sigma": Quantity(TIME, "rad", "1-sigma of its error about each axis"),
+        "q_if_noise": Quantity(TIME, "rad", "1-sigma of its error about each axis"),
     }
     kind: Literal["attitude_sensor"]
     noise_deg: Positive
@@ -40,4 +40,4 @@ class AttitudeSensor(SimulationPart):
         anything = quaternion.normalize(draws.normal(Stream.CLUTTER, (true.shape[1], 4)))
         measured = np.where(chance[..., :1] < self.wild_share, anything, measured)
         measured[chance[..., 1] < self.missing_share] = np.nan
-        return {"measured_q_if": measured, "measured_q_if_sigma": np.full(true.shape[:2], sigma)}
+        return {"measured_q_if": measured, "q_if_noise": np.full(true.shape[:2], sigma)}
