@@ -18,6 +18,8 @@ from debrisest.parts.filters.replay import Replay
 from debrisest.parts.recoveries.basis_pursuit import BasisPursuit
 from debrisest.parts.recoveries.direction_cosines import DirectionCosines
 from debrisest.parts.recoveries.line_spectrum import LineSpectrumRecovery
+from debrisest.parts.recoveries.pixel_pose import PixelPose
+from debrisest.parts.recoveries.triangulation import Triangulation
 from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
 from debrisest.parts.sensors.attitude_knowledge import AttitudeKnowledge
 from debrisest.parts.sensors.attitude_sensor import AttitudeSensor
@@ -28,6 +30,8 @@ from debrisest.parts.sensors.pinhole_camera import PinholeCamera
 from debrisest.parts.sensors.pointing_control import PointingControl
 from debrisest.parts.sensors.stereo_camera import StereoCamera
 from debrisest.parts.sources.datasets import Datasets
+from debrisest.parts.sources.poses import MeasuredPoses
+from debrisest.parts.sources.tracks import MeasuredTracks
 from debrisest.parts.starts.drawn_orbit import DrawnOrbit
 from debrisest.parts.starts.drawn_pose import DrawnPose
 from debrisest.parts.starts.drawn_shape import DrawnShape
@@ -80,9 +84,9 @@ CATALOG: dict[str, list[type[Part]]] = {
         Detections,
         CameraRange,
     ],
-    "measured": [Datasets],
+    "measured": [Datasets, MeasuredTracks, MeasuredPoses],
     "starts": [DrawnPose, DrawnOrbit, DrawnShape, GivenGuess],
-    "recovery": [BasisPursuit, DirectionCosines, LineSpectrumRecovery],
+    "recovery": [BasisPursuit, DirectionCosines, LineSpectrumRecovery, PixelPose, Triangulation],
     "problem": [
         TumblingAttitude,
         TumblingPoints,

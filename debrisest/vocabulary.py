@@ -5,6 +5,7 @@ import numpy as np
 from debrisest.parts.filters.quantities import QUANTITIES as FILTERS
 from debrisest.parts.recoveries.quantities import QUANTITIES as RECOVERIES
 from debrisest.parts.sensors.quantities import QUANTITIES as SENSORS
+from debrisest.parts.sources.quantities import QUANTITIES as SOURCES
 from debrisest.parts.truth.quantities import QUANTITIES as TRUTH
 from debrisest.problems import quantities as shared
 from debrisest.problems.camera_range import quantities as camera_range
@@ -28,6 +29,7 @@ VOCABULARY: dict[str, Quantity] = {
     **_OF_ALL_STAGES,
     **TRUTH,
     **SENSORS,
+    **SOURCES,
     **RECOVERIES,
     **FILTERS,
     **shared.QUANTITIES,

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from debrisest import __version__
-from debrisest.cli import scenarios, show, stages
+from debrisest.cli import measured, scenarios, show, stages
 from debrisest.cli.exits import Commands
 
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -24,6 +24,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "validate": scenarios.validate,
     "schema": scenarios.schema,
     "init": scenarios.init,
+    "import": measured.import_,
 }
 
 app = typer.Typer(

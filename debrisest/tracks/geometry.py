@@ -4,6 +4,7 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.tracks.mirror import is_mirrored
+from debrisest.tracks.report import Refusal
 from debrisest.tracks.types import BodyPoints, Tracks
 
 
@@ -26,7 +27,8 @@ def compare_geometry(tracks: Tracks, points: Array, body: BodyPoints) -> list[st
     model = body.points[[body.features.index(name) for name in shared]]
     if is_mirrored(np.broadcast_to(model, seen.shape), seen).mean() > 0.5:
         hint = "is an axis' sign changed, or are two columns swapped?"
-        told.append(f"{tracks.source}: points match {body.source} as a mirror image only; {hint}")
+        said = f"points match {body.source} as a mirror image only; {hint}"
+        told.append(Refusal(f"{tracks.source}: {said}"))
     distance = np.linalg.norm(seen[:, :, None] - seen[:, None], axis=-1)
     known_distance = np.linalg.norm(model[:, None] - model[None], axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -11,6 +11,10 @@ MOST = 20
 """Problems of a file that are told in full; further ones are counted."""
 
 
+class Refusal(str):
+    """A sentence on data of which nothing can be estimated, among others that are only told."""
+
+
 class Report:
     """Collects the problems of a file, each ``file:line: column: sentence``."""
 

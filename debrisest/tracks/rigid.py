@@ -14,6 +14,7 @@ import numpy as np
 from debrisest.arrays import Array, IntArray
 from debrisest.tracks.geometry import compare_geometry
 from debrisest.tracks.mirror import reflections
+from debrisest.tracks.report import Refusal
 from debrisest.tracks.rows import POINT
 from debrisest.tracks.types import BodyPoints, Tracks
 
@@ -26,7 +27,8 @@ _SOFT = 0.1  # of the body's size: a spread that no noise of use has
 def check_rigid(tracks: Tracks, body: BodyPoints | None = None) -> list[str]:
     """Sentences on what is not rigid or is mirrored in tracked points, empty if all is well.
 
-    ``body`` is the known geometry, if there is one: names and lengths are compared with it too.
+    A `Refusal` tells that nothing can be estimated. ``body`` is the known geometry, if there is
+    one: names and lengths are compared with it too.
     """
     if tracks.points is None or len(tracks.times) < 2 or len(tracks.features) < 3:
         return []
@@ -62,7 +64,8 @@ def _loose(tracks: Tracks, points: Array, lines: IntArray) -> list[str]:
     (each, usual), size = _typical(points), _size(points)
     if usual > _SOFT * size:
         said = f"distances between features vary by {usual:.3g} m, of a body of {size:.3g} m"
-        return [f"{tracks.source}: {said}: this is not one rigid body{_column(points)}"]
+        why = f"{tracks.source}: {said}: this is not one rigid body{_column(points)}"
+        return [Refusal(why)]
     if len(points) < _FEW:
         return []
     limit, told = _FAR * max(usual, 1e-9 * size), []

@@ -1,6 +1,6 @@
 """A sensor of the target's attitude: what a pose network or a perspective solver gives."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
@@ -10,7 +10,6 @@ from debrisest.assessment.attitude import true_feature_attitude
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
-from debrisest.quantity import TIME, TIME_QUATERNION, Quantity
 from debrisest.roles import Positive, SimulationPart
 
 
@@ -22,10 +21,6 @@ class AttitudeSensor(SimulationPart):
 
     needs = ("true_q_ib", "true_point_b")
     measures = ("measured_q_if", "q_if_noise")
-    declares: ClassVar[dict[str, Quantity]] = {
-        "measured_q_if": Quantity(TIME_QUATERNION, "1", "measured attitude of the feature frame"),
-        "q_if_noise": Quantity(TIME, "rad", "1-sigma of its error about each axis"),
-    }
     kind: Literal["attitude_sensor"]
     noise_deg: Positive
     missing_share: Annotated[float, Field(ge=0, le=1)] = 0.0

@@ -1,0 +1,20 @@
+"""What only measured data have, and what single images of a known body tell."""
+
+from debrisest.quantity import TIME, TIME_VECTOR, Quantity
+
+QUANTITIES = {
+    "notes": Quantity(("notes",), "", "what was understood of the files, in sentences"),
+    "point_sigma": Quantity(
+        (*TIME, "feature", "axis"), "m", "1-sigma of measured_point; NaN where it is not known"
+    ),
+    "rig_rotation": Quantity(
+        ("run", "camera", "row", "column"), "1", "turns the first camera's vectors into a camera's"
+    ),
+    "rig_translation": Quantity(
+        ("run", "camera", "axis"), "m", "origin of the first camera in a camera's axes"
+    ),
+    "measured_q_if_covariance": Quantity(
+        (*TIME, "row", "column"), "rad2", "covariance of the turn, inertial axes"
+    ),
+    "measured_position": Quantity(TIME_VECTOR, "m", "origin of the body's axes, from the chaser"),
+}
