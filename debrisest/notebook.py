@@ -44,7 +44,8 @@ def run(
 ) -> pd.DataFrame:
     """Bring a scenario up to date and write its tables; return what is asked for of the cells.
 
-    The columns are those of ``tables.csv``. Runs that failed or diverged are counted there.
+    The columns are those of ``tables.csv``. Runs that failed or diverged are counted there. Tables
+    of measured data hold what needs no truth, which may be nothing.
     Raises UserError for wrong input, as the command does.
     """
     if not isinstance(scenario, LoadedScenario):
@@ -53,9 +54,10 @@ def run(
     check_selection([scenario], selection)
     bring_up_to_date([scenario], Path(out), selection, Machine(jobs, quiet=quiet))
     rows, _ = tabulate(scenario, Path(out), plan(scenario, Path(out), Selection(runs)))
-    if rows.empty:
+    if rows.empty and scenario.common.measured is None:
         raise UserError(f"{scenario.name}: there are no tables, since no step gave a result")
-    write_tables(scenario, Path(out), rows)
+    if not rows.empty:
+        write_tables(scenario, Path(out), rows)
     means = scenario.common.tables.means
     return chosen(rows, partial(selection.asks_for, means=means))
 

@@ -68,6 +68,7 @@ _TABLE_SCALE = {
     ("m2", "km2"): 1e-6,
     ("N m", "mN m"): 1e3,
 }
+_FOR_PEOPLE = {"rad": "deg", "rad/s": "deg/s"}
 
 
 def has_runs(name: str) -> bool:
@@ -89,6 +90,12 @@ def table_scale(name: str, unit: str = "") -> float:
     """Return the factor from a quantity's SI unit to a unit, by default that of the tables."""
     quantity = VOCABULARY[name]
     return _TABLE_SCALE.get((quantity.unit, unit or quantity.table_unit), 1.0)
+
+
+def shown_unit(name: str) -> str:
+    """Return the unit in which people see a quantity: that of the tables, degrees for angles."""
+    quantity = VOCABULARY[name]
+    return quantity.table_unit or _FOR_PEOPLE.get(quantity.unit, quantity.unit)
 
 
 def possible_units(name: str) -> list[str]:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from debrisest import __version__
-from debrisest.cli import measured, scenarios, show, stages
+from debrisest.cli import estimates, measured, scenarios, show, stages
 from debrisest.cli.exits import Commands
 
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -21,6 +21,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "table": show.table,
     "plot": show.plot,
     "status": show.status,
+    "estimates": estimates.estimates,
     "validate": scenarios.validate,
     "schema": scenarios.schema,
     "init": scenarios.init,

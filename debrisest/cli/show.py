@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from debrisest.cli.estimates import estimates_of
 from debrisest.cli.exits import exit_if
 from debrisest.cli.inputs import load_all, select
 from debrisest.cli.options import (
@@ -123,6 +124,9 @@ def show_tables(
         wrong += unexpected(scenario, rows, asked)
     if shown and form is not None:
         print(render_all(shown, form), end="")
+    if form is Format.RICH:
+        measured = [one for one in scenarios if one.common.measured is not None]
+        print(estimates_of(measured, out, selection), end="")
     if check:
         for sentence in wrong:
             print(sentence, file=sys.stderr)

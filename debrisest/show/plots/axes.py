@@ -79,8 +79,13 @@ def _step(times: Array) -> float:
 
 def shade_gaps(axis: Axes, times: Array, missing: BoolArray) -> None:
     """Shade the epochs without an observation over the whole height."""
+    shade(axis, gaps(times, missing))
+
+
+def shade(axis: Axes, spans: Sequence[tuple[float, float]]) -> None:
+    """Shade stretches of time, each with its start and its length, over the whole height."""
     axis.broken_barh(
-        gaps(times, missing),
+        spans,
         (0, 1),
         transform=axis.get_xaxis_transform(),
         facecolor=SHADE,

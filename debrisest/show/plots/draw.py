@@ -19,6 +19,7 @@ from debrisest.show.plots import (
     covariance_trace,
     error_over_time,
     histograms,
+    motion,
     nees_over_time,
     orbit_error,
     pixel_paths,
@@ -56,6 +57,7 @@ FIGURES: dict[str, Kind] = {
         recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
     ),
     "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma", "moments_b")),
+    "motion": Kind(motion.motion, motion.DATASETS),
     "error_over_time": Kind(
         error_over_time.error_over_time, error_over_time.QUANTITIES, of_all_runs=True
     ),
