@@ -28,7 +28,7 @@ SCALES = {
     ("N m", "mN m"): 1000.0,
     ("kg m2", "kg m2"): 1.0,
 }
-ALONE = ("point_sigma", "measured_q_if_sigma")
+ALONE = ("point_sigma",)
 """Noise of measurements, of other axes than what it is the noise of."""
 TABLE_QUANTITIES = [name for name, quantity in VOCABULARY.items() if quantity.table_unit]
 

@@ -41,9 +41,9 @@ class Derived(NamedTuple):
     axis_rates: Quantity
     """Rates about the principal axes at the arc's epoch (3,), rad/s."""
     momentum: Quantity
-    """Direction of the angular momentum, inertial (3,); the sigma is an angle."""
+    """Direction of the angular momentum, inertial (3,)."""
     spin_axis: Quantity
-    """Direction of the rate in ``f`` at the epoch (3,); the sigma is an angle."""
+    """Direction of the rate at the epoch, inertial (3,)."""
     speed: Quantity
     """Rate at the epoch, rad/s."""
     nutation_angle: Quantity
@@ -70,7 +70,7 @@ def derived(arc: Arc, covariance: Array) -> Derived:
         Quantity(np.where(shown & ~lost, shares, np.nan), share_sigma),
         Quantity(np.where(vague, np.nan, rates), rate_sigma),
         _direction(arc, covariance, _momentum),
-        _direction(arc, covariance, lambda moved: moved.rate),
+        _direction(arc, covariance, lambda moved: quaternion.rotate(moved.q, moved.rate)),
         Quantity(*_spread(arc, covariance, _speed)),
         Quantity(np.where(unsure, np.nan, nutates)[:1], nutate_sigma[:1]),
         Quantity(np.where(unsure, np.nan, nutates)[1:], nutate_sigma[1:]),
@@ -91,15 +91,15 @@ def _spread(arc: Arc, covariance: Array, of: Callable[[Arc], Array]) -> tuple[Ar
 
 
 def _direction(arc: Arc, covariance: Array, of: Callable[[Arc], Array]) -> Quantity:
-    """Return a unit vector and the angle by which it may be off, NaN if that is large."""
+    """Return a unit vector and the sigma of its components, NaN if the angle is large."""
 
     def unit(moved: Arc) -> Array:
         vector = of(moved)
         return np.asarray(vector / max(float(np.linalg.norm(vector)), 1e-300))
 
     value, sigma = _spread(arc, covariance, unit)
-    angle = np.array([np.linalg.norm(sigma)])
-    return Quantity(value if angle[0] < _LOOSEST_AXIS else np.full(3, np.nan), angle)
+    sure = np.linalg.norm(sigma) < _LOOSEST_AXIS
+    return Quantity(value if sure else np.full(3, np.nan), sigma)
 
 
 def _axis_sigmas(moments: Array, axes: Array, covariance: Array) -> Array:

@@ -189,11 +189,12 @@ def _until(data: Data) -> str:
 def _direction(data: Data, name: str) -> str:
     if name not in data:
         return ""
-    axis, sigma = data[name], _number(data, f"{name}_sigma")
-    off = rounded(np.degrees(sigma), np.degrees(sigma))[1]
+    axis, sigma = data[name], data[f"{name}_sigma"]
+    angle = float(np.degrees(np.linalg.norm(sigma)))
+    off = rounded(angle, angle)[1]
     if not np.isfinite(axis).all():
         return "undefined" + f": may be off by {off} deg" * bool(off)
-    components = ", ".join(rounded(x, sigma)[0] for x in axis)
+    components = ", ".join(rounded(x, np.radians(angle))[0] for x in axis)
     return f"({components}) ± {off or '?'} deg, inertial"
 
 

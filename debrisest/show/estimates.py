@@ -58,8 +58,7 @@ def export(results: Results, path: Path) -> int:
     """Write all epochs of all runs as CSV with `COLUMNS`; return the number of rows.
 
     Units are those of the tables. What does not change with time has no ``time_s``; what is not
-    known has no ``value``; runs that failed are left out. Of directions, which have one sigma for
-    all components, it is the angle in rad by which they may be off.
+    known has no ``value``; runs that failed are left out.
     """
     written = 0
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
@@ -119,7 +118,6 @@ def _of_quantity(
     name: str, data: Data, run: int, features: Sequence[str], epochs: slice
 ) -> pd.DataFrame:
     value, sigma = data[name][run], data[f"{name}_sigma"][run]
-    sigma = np.broadcast_to(np.expand_dims(sigma, [*range(sigma.ndim, value.ndim)]), value.shape)
     axes, times = VOCABULARY[name].axes[1:], np.array([np.nan])
     if axes[:1] == ("time_s",):
         value, sigma, times, axes = value[epochs], sigma[epochs], data["time_s"][epochs], axes[1:]

@@ -23,7 +23,7 @@ def test_general_body(tumbling) -> None:
     assert np.all(angle < 5.0 * found.axes.sigma)
     momentum = tumbling.attitude[0].apply(tumbling.inertia @ tumbling.rate[0])
     off = np.linalg.norm(np.cross(momentum / np.linalg.norm(momentum), found.momentum.value))
-    assert off < 5.0 * found.momentum.sigma[0]
+    assert off < 5.0 * np.linalg.norm(found.momentum.sigma)
 
 
 def test_axisymmetric_body_has_a_symmetry_axis_and_a_period_only(body_of) -> None:
@@ -48,5 +48,6 @@ def test_steady_spin_leaves_the_inertia_undefined(body_of) -> None:
     found = derived(motion.arc, motion.claimed)
     assert np.isnan(found.moments.value).all()
     assert np.isnan(found.nutation_period.value).all()
-    assert found.spin_axis.value @ [0, 0, 1] > np.cos(5.0 * found.spin_axis.sigma[0])
+    axis, sigma = truth.attitude[0].apply([0.0, 0.0, 1.0]), np.linalg.norm(found.spin_axis.sigma)
+    assert np.linalg.norm(np.cross(found.spin_axis.value, axis)) < 5.0 * sigma
     assert abs(found.speed.value[0] - np.radians(4.0)) < 5.0 * found.speed.sigma[0]

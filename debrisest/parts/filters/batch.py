@@ -25,4 +25,4 @@ class Batch(FilterPart):
         """Return the estimates of all epochs."""
         kept = sorted({*kept_epochs(self.keep_s, given.clock), len(model.times) - 1})
         motions = [model.estimate(run) for run in range(model.runs)]
-        return estimates(motions, model.times, kept)
+        return estimates(motions, model.times, given.measured, kept)

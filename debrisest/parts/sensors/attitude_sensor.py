@@ -1,6 +1,6 @@
 """A sensor of the target's attitude: what a pose network or a perspective solver gives."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
@@ -10,7 +10,6 @@ from debrisest.assessment.attitude import true_feature_attitude
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
-from debrisest.quantity import TIME, TIME_QUATERNION, Quantity
 from debrisest.roles import Positive, SimulationPart
 
 
@@ -21,11 +20,7 @@ class AttitudeSensor(SimulationPart):
     """
 
     needs = ("true_q_ib", "true_point_b")
-    measures = ("measured_q_if", "measured_q_if_sigma")
-    declares: ClassVar[dict[str, Quantity]] = {
-        "measured_q_if": Quantity(TIME_QUATERNION, "1", "measured attitude of the feature frame"),
-        "measured_q_if_sigma": Quantity(TIME, "rad", "1-sigma of its error about each axis"),
-    }
+    measures = ("measured_q_if", "q_if_noise")
     kind: Literal["attitude_sensor"]
     noise_deg: Positive
     missing_share: Annotated[float, Field(ge=0, le=1)] = 0.0
@@ -40,4 +35,4 @@ class AttitudeSensor(SimulationPart):
         anything = quaternion.normalize(draws.normal(Stream.CLUTTER, (true.shape[1], 4)))
         measured = np.where(chance[..., :1] < self.wild_share, anything, measured)
         measured[chance[..., 1] < self.missing_share] = np.nan
-        return {"measured_q_if": measured, "measured_q_if_sigma": np.full(true.shape[:2], sigma)}
+        return {"measured_q_if": measured, "q_if_noise": np.full(true.shape[:2], sigma)}

@@ -8,6 +8,8 @@ _CONTROL = ("run", "control_time_s", "observer")
 
 QUANTITIES = {
     "baseline": Quantity(RUN, "m", "distance between the cameras"),
+    "measured_q_if": Quantity(TIME_QUATERNION, "1", "measured attitude of features or body axes"),
+    "q_if_noise": Quantity(TIME, "rad", "1-sigma of its error about each axis; NaN if not known"),
     "focal_px": Quantity(RUN, "px", "focal length"),
     "measured_pixel": Quantity(
         _TIME_IMAGE, "px", "pixels of the features in their order, or of points without labels"

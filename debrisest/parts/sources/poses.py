@@ -34,7 +34,7 @@ class MeasuredPoses(FromFiles):
         if q_ic is not None:
             q = quaternion.multiply(q_ic, q)
             position = None if position is None else quaternion.rotate(q_ic, position)
-        data: Data = {"measured_q_if": q, "measured_q_if_sigma": sigma}
+        data: Data = {"measured_q_if": q, "q_if_noise": sigma}
         if position is not None:
             data["measured_position"] = position
         return one_run(poses.source, poses.times, data, poses.notes + told)

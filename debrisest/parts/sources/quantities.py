@@ -1,6 +1,6 @@
 """What only measured data have, and what single images of a known body tell."""
 
-from debrisest.quantity import TIME, TIME_QUATERNION, TIME_VECTOR, Quantity
+from debrisest.quantity import TIME, TIME_VECTOR, Quantity
 
 QUANTITIES = {
     "notes": Quantity(("notes",), "", "what was understood of the files, in sentences"),
@@ -13,8 +13,6 @@ QUANTITIES = {
     "rig_translation": Quantity(
         ("run", "camera", "axis"), "m", "origin of the first camera in a camera's axes"
     ),
-    "measured_q_if": Quantity(TIME_QUATERNION, "1", "attitude of the body's own axes"),
-    "measured_q_if_sigma": Quantity(TIME, "rad", "1-sigma about each axis; NaN if not known"),
     "measured_q_if_covariance": Quantity(
         (*TIME, "row", "column"), "rad2", "covariance of the turn, inertial axes"
     ),

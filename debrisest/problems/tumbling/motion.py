@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import model_validator
 
 from debrisest.arrays import Array, Data
+from debrisest.assessment.statistics import per_dimension
 from debrisest.attitude import quaternion
 from debrisest.batch.estimate import (
     estimate_from_attitudes,
@@ -88,7 +89,9 @@ class TumblingMotion(InFeatureFrame):
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors in true principal axes, if known; unknown geometry leaves a frame free."""
         counted = ("accepted", "fit", "lost_directions", "rejected_share")
-        return {name: data[name] for name in counted} | super().assess(data, scored)
+        seen = data["rejected"] + data["observations_used"]
+        share = {"rejected": per_dimension(data["rejected"], seen)}
+        return share | {name: data[name] for name in counted} | super().assess(data, scored)
 
     def in_true_frame(self, data: Data) -> Data:
         """Return the data with ``q_bf`` from the true feature frame."""
@@ -110,7 +113,7 @@ def _from_attitudes(data: Data, times: Array, run: int) -> Motion:
     if "measured_q_if_covariance" in data:
         sigma = data["measured_q_if_covariance"][run]
     else:
-        sigma = data["measured_q_if_sigma"][run]
+        sigma = data["q_if_noise"][run]
     given = None if np.isnan(sigma).all() else sigma
     return estimate_from_attitudes(times, data["measured_q_if"][run], given)
 

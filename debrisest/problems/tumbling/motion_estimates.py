@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from debrisest.arrays import Array, Data
-from debrisest.attitude import quaternion
 from debrisest.batch.arc import INERTIA, RATE, TURN, UNKNOWNS, Arc, course, moved
 from debrisest.batch.derived import derived
 from debrisest.batch.motion import Motion
@@ -19,11 +18,19 @@ _TO_PLAIN = BASIS[:, [0, 1, 0, 0, 1], [0, 1, 1, 2, 2]].T
 _ALL_FIVE = 5.0
 
 
-def estimates(motions: Sequence[Motion], times: Array, kept: Sequence[int]) -> Estimates:
-    """Return the record of all runs; the covariances are those at the epochs ``kept``."""
+def estimates(
+    motions: Sequence[Motion], times: Array, measured: Array, kept: Sequence[int]
+) -> Estimates:
+    """Return the record of all runs that ``measured (run, time, m)``.
+
+    The covariances are those at the epochs ``kept``.
+    """
     states, sigmas, covariances = zip(*(_of_run(motion, times, kept) for motion in motions))
     shape = (len(motions), len(times))
-    figures = [_figures(motion, times) for motion in motions]
+    figures = [
+        _figures(motion) | _counted(motion, m) | _at_end(motion, times)
+        for motion, m in zip(motions, measured)
+    ]
     return Estimates(
         *(np.stack(states), np.stack(sigmas), np.stack(covariances)),
         kept=np.array(kept, dtype=np.int64),
@@ -73,9 +80,8 @@ def _said(motion: Motion) -> str:
     return f"{motion.status.sentence}; {motion.judged.sentence}"
 
 
-def _figures(motion: Motion, times: Array) -> Data:
-    """What a run says of itself, and what follows at the last epoch, by name."""
-    used = motion.used if motion.used.ndim == 2 else motion.used[:, None]
+def _figures(motion: Motion) -> Data:
+    """What a run says of itself, by name."""
     lost = lost_directions(motion.claimed) if motion.arc is not None else _ALL_FIVE
     return {
         "accepted": np.asarray(float(motion.status.accepted)),
@@ -85,9 +91,17 @@ def _figures(motion: Motion, times: Array) -> Data:
         "noise_found": np.asarray(motion.noise),
         "holds_from": np.asarray(motion.holds[0]),
         "holds_until": np.asarray(motion.holds[1]),
-        "observations_used": used.sum(axis=-1).astype(np.float64),
         **_points(motion),
-        **_at_end(motion, times),
+    }
+
+
+def _counted(motion: Motion, measured: Array) -> Data:
+    """How many of the measurements (time, m) of each epoch count, and how many do not."""
+    used = motion.used.reshape(len(measured), -1)
+    seen = np.isfinite(measured.reshape(*used.shape, -1)).all(axis=-1)
+    return {
+        "observations_used": used.sum(axis=-1).astype(np.float64),
+        "rejected": (seen & ~used).sum(axis=-1).astype(np.float64),
     }
 
 
@@ -112,10 +126,10 @@ def _at_end(motion: Motion, times: Array) -> Data:
     by = _transitions(motion.arc, times[-1:])[0]
     found = derived(arc, by @ motion.claimed @ by.T)
     result |= {
-        "spin_axis_i": quaternion.to_matrix(arc.q) @ found.spin_axis.value,
-        "spin_axis_i_sigma": found.spin_axis.sigma[0],
+        "spin_axis_i": found.spin_axis.value,
+        "spin_axis_i_sigma": found.spin_axis.sigma,
         "momentum_axis_i": found.momentum.value,
-        "momentum_axis_i_sigma": found.momentum.sigma[0],
+        "momentum_axis_i_sigma": found.momentum.sigma,
         "nutation_angle": found.nutation_angle.value[0],
         "nutation_angle_sigma": found.nutation_angle.sigma[0],
         "nutation_period": found.nutation_period.value[0],
@@ -130,8 +144,8 @@ def _undefined() -> Data:
     one, three = np.asarray(np.nan), np.full(3, np.nan)
     names = ("nutation_angle", "nutation_period", "spin_axis_i", "momentum_axis_i", "moment_share")
     shapes = (one, one, three, three, three)
-    sigmas = (one, one, one, one, three)
-    return dict(zip(names, shapes)) | {f"{name}_sigma": s for name, s in zip(names, sigmas)}
+    undefined = dict(zip(names, shapes))
+    return undefined | {f"{name}_sigma": value for name, value in undefined.items()}
 
 
 def _speeds(path: Path) -> tuple[Array, Array]:

@@ -23,6 +23,8 @@ _ESTIMATED = {
         RUN, "rad", "angle of the angular momentum to the axis it circles, last epoch", "deg"
     ),
     "nutation_period": Quantity(RUN, "s", "after which the rate in the body is the same", "s"),
+    "spin_axis_i": Quantity(RUN_VECTOR, "1", "direction of the rate at the last epoch"),
+    "momentum_axis_i": Quantity(RUN_VECTOR, "1", "direction of the angular momentum"),
     "moment_share": Quantity(RUN_VECTOR, "1", "principal moments over the largest, ascending"),
     "q_ib": Quantity(TIME_QUATERNION, "1", "estimated attitude of principal axes"),
     "q_bf": Quantity(TIME_QUATERNION, "1", "estimated attitude of features in principal axes"),
@@ -32,10 +34,6 @@ _ESTIMATED = {
 QUANTITIES = {
     **with_sigmas(_ESTIMATED),
     "q_if_sigma": Quantity(TIME_QUATERNION, "1", "1-sigma of q_if"),
-    "spin_axis_i": Quantity(RUN_VECTOR, "1", "direction of the rate at the last epoch"),
-    "spin_axis_i_sigma": Quantity(RUN, "rad", "angle by which spin_axis_i may be off, 1-sigma"),
-    "momentum_axis_i": Quantity(RUN_VECTOR, "1", "direction of the angular momentum"),
-    "momentum_axis_i_sigma": Quantity(RUN, "rad", "angle by which it may be off, 1-sigma"),
     "accepted": Quantity(RUN, "1", "torque-free motion was tested and holds", "1"),
     "lost_directions": Quantity(
         *(RUN, "1", "numbers of the inertia, of five, that the motion does not show", "1"),
@@ -43,8 +41,8 @@ QUANTITIES = {
     ),
     "rejected_share": Quantity(RUN, "1", "share of the measurements that do not count", "1"),
     "noise_found": Quantity(RUN, "", "noise as taken, over the given one, or in its unit"),
-    "holds_from": Quantity(RUN, "s", "from when torque-free motion explains the data", "s"),
-    "holds_until": Quantity(RUN, "s", "until when it does", "s"),
+    "holds_from": Quantity(RUN, "s", "from when torque-free motion explains the data"),
+    "holds_until": Quantity(RUN, "s", "until when it does"),
     "observations_used": Quantity(TIME, "1", "measurements of the epoch that count", "1"),
     "relabeling": Quantity(("run", "row", "column"), "1", "estimated to true principal axes"),
     "pitch": Quantity(TIME, "rad", "pitch error", "deg"),
