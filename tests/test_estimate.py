@@ -1,5 +1,6 @@
 """From a user's file to the answer: against the truth of the shipped examples, and every ending."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from debrisest.results.open import open_results
 from debrisest.show.answer import answer
 
 TRUTH = Path(__file__).parent / "examples"
+GUIDE = (Path(__file__).parent.parent / "docs" / "measured.md").read_text(encoding="utf-8")
 LAST = slice(-1, None)
 
 
@@ -108,6 +110,16 @@ def test_the_answer_is_that_of_the_files_that_are_named(done: tuple[str, Path, s
     rows = pd.read_csv(folder / "estimates.csv")
     speed = rows[rows["quantity"] == "speed_end"]
     assert speed["value"].item() == pytest.approx(np.degrees(stored(folder)["speed_end"]))
+
+
+def test_the_guide_shows_the_lines_of_the_answer(done: tuple[str, Path, str]) -> None:
+    """With the words and labels of today; figures may differ in their last digits."""
+    name, folder, _ = done
+    if name != "tracks":
+        pytest.skip("the guide shows the answer of the tracks")
+    shown = GUIDE.partition("$ debrisest estimate tracks.csv\n")[2].partition("\n\n")[0]
+    without_figures = [re.sub(r"[-\d.]+", "#", line.strip()) for line in shown.splitlines()]
+    assert without_figures == [re.sub(r"[-\d.]+", "#", line) for line in answer(stored(folder))]
 
 
 def test_the_scenario_does_the_same_through_sweep(
