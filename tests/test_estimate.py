@@ -147,6 +147,9 @@ def few(shipped: Path, tmp_path: Path) -> Path:
 def test_another_scenario_is_not_replaced_unless_forced(
     few: Path, tmp_path: Path, cli: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Through a link to a folder elsewhere, too."""
+    (tmp_path / "far" / "away").mkdir(parents=True)
+    (tmp_path / "results").symlink_to(tmp_path / "far" / "away")
     monkeypatch.chdir(tmp_path)
     assert cli("estimate", few, "--quiet").exit_code == 0
     config = tmp_path / "results" / "few" / "few.yaml"

@@ -1,6 +1,7 @@
 """The command from a user's file to the answer."""
 
 import os
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -90,10 +91,10 @@ def _scenario(file: Path, options: dict[str, Any], folder: Path) -> tuple[str, l
 
 
 def _from(folder: Path, path: str | list[str]) -> str | list[str]:
-    """Return a path, or some, as it counts from a folder."""
+    """Return a path, or some, as it counts from a folder, which links may lead to."""
     if isinstance(path, list):
-        return [Path(os.path.relpath(each, folder)).as_posix() for each in path]
-    return Path(os.path.relpath(path, folder)).as_posix()
+        return [str(_from(folder, each)) for each in path]
+    return Path(os.path.relpath(Path(path).resolve(), folder.resolve())).as_posix()
 
 
 def _written(path: Path, text: str, force: bool) -> Path:
@@ -102,9 +103,10 @@ def _written(path: Path, text: str, force: bool) -> Path:
     from debrisest.files import replacing
 
     if path.exists() and path.read_text(encoding="utf-8") != text and not force:
+        again = shlex.join(["debrisest", "sweep", str(path), "--out", str(path.parent.parent)])
         raise UserError(
-            f"{path}: another scenario is there already; run it with debrisest sweep {path} --out "
-            f"{path.parent.parent}, choose another folder with --out, or replace it with --force"
+            f"{path}: another scenario is there already; run it with {again}, "
+            "choose another folder with --out, or replace it with --force"
         )
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
