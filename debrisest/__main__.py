@@ -8,7 +8,10 @@ def main() -> None:
     interrupts.listen()
     from debrisest.cli import main as run
 
-    run()
+    try:
+        run()
+    finally:
+        interrupts.ignore()
 
 
 if __name__ == "__main__":

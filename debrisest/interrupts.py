@@ -25,6 +25,13 @@ def listen() -> None:
     """End this process at once, with the sentence, from now on whenever a signal asks for it."""
     for number in _SIGNALS:
         signal.signal(number, _end)
+    sys.unraisablehook = _tell_unless_interrupted
+
+
+def ignore() -> None:
+    """Let no signal take the exit code from a command that is over."""
+    for number in _SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 @contextmanager
@@ -55,6 +62,11 @@ def raised() -> Iterator[Callable[[], None]]:
     finally:
         listen()
     check()
+
+
+def _tell_unless_interrupted(swallowed: Any) -> None:
+    if not isinstance(swallowed.exc_value, Interrupted):
+        sys.__unraisablehook__(swallowed)
 
 
 def _end(number: int, _: Any) -> None:

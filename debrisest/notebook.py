@@ -27,7 +27,10 @@ def load(
     Raises UserError with every problem of the file.
     """
     own_parts = read_plugins(map(Path, plugins))
-    overrides = [f"{key}={json.dumps(value, default=_plain)}" for key, value in settings.items()]
+    overrides = [
+        f"{key}={json.dumps(value, default=_plain, ensure_ascii=False)}"
+        for key, value in settings.items()
+    ]
     return load_scenario(scenario_path(Path(config)), overrides, own_parts)
 
 

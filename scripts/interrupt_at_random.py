@@ -48,10 +48,10 @@ def ended(out: Path, jobs: int, number: signal.Signals, delay: float) -> list[st
     mark = f"{os.getpid()}-{out.name}"
     process = swept(out, jobs, mark)
     time.sleep(delay)
-    finished = process.poll() is not None
+    finished = process.poll() is not None or (out / "small" / "tables.csv").exists()
     process.send_signal(number)
     told = process.communicate()[1]
-    wrong = ["a trace"] if "Traceback" in told else []
+    wrong = [f"a trace:\n{told}"] if "Traceback" in told else []
     if not finished and process.returncode != CODES[number]:
         wrong.append(f"exit code {process.returncode}")
     if not finished and number != signal.SIGKILL and SENTENCE not in told:

@@ -28,11 +28,11 @@ def load_all(
             published_values(scenarios[-1])
         except UserError as error:
             problems += error.problems
-    stems = [path.stem for path in configs]
+    stems = [path.stem.casefold() for path in configs]
     problems += [
         f"{path}: another scenario is called {path.stem} too; results would be mixed"
         for path in configs
-        if stems.count(path.stem) > 1
+        if stems.count(path.stem.casefold()) > 1
     ]
     if problems:
         raise UserError(problems)
