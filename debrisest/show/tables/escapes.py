@@ -15,13 +15,17 @@ _MARKDOWN = re.compile(
     r"[\\`*|\[\]$]"  # signs that mean something wherever they stand
     r"|<(?=[A-Za-z/!?])|&(?=[A-Za-z#])"  # the start of a tag or of an entity
     r"|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])"  # emphasis begins and ends at words
-    r"|^[>~]|^[#+-](?=[\s#-])|(?<=^[0-9])[.)](?=\s)"  # quotation, fence, heading, list
 )
 
 
 def markdown(text: str) -> str:
-    """Return a text of one line as Markdown that shows it."""
+    """Return a text of one line as Markdown that shows it, in a heading or a cell."""
     return _MARKDOWN.sub(lambda sign: f"\\{sign[0]}", text)
+
+
+def paragraph(text: str) -> str:
+    """Return the same for a paragraph, whose start could be that of a heading, a list, a rule."""
+    return re.sub(r"^(\d{0,9})([-#+=>~.)])", r"\1\\\2", markdown(text))
 
 
 def latex(text: str) -> str:

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from debrisest.scenario.load import LoadedScenario
-from debrisest.show.tables.escapes import latex, markdown
+from debrisest.show.tables.escapes import latex, markdown, paragraph
 from debrisest.show.tables.layout import Sheet, sheets
 from debrisest.show.tables.verdict import (
     CONSISTENCY,
@@ -57,7 +57,7 @@ def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
 
 def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     common = scenario.common
-    parts = [f"# {markdown(common.title)}", markdown(common.source), *_legends(cells)]
+    parts = [f"# {markdown(common.title)}", paragraph(common.source), *_legends(cells)]
     for sheet in sheets(scenario, cells):
         lines = [sheet.heads, ["---"] * len(sheet.heads), *sheet.rows]
         escaped = [[markdown(text) for text in line] for line in lines]
