@@ -1,7 +1,9 @@
 """All commands by name."""
 
 import os
+import sys
 from collections.abc import Callable
+from io import TextIOWrapper
 from typing import Annotated
 
 import typer
@@ -56,5 +58,8 @@ def _common(
 
 
 def main() -> None:
-    """Run the command line."""
+    """Run the command line, whose texts may have signs that the terminal has not."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     app()
