@@ -1,6 +1,18 @@
-"""``python -m debrisest``."""
+"""The start of the command line, also as ``python -m debrisest``."""
 
-from debrisest.cli import main
+from debrisest import interrupts
+
+
+def main() -> None:
+    """Listen to Ctrl-C, then import the command line and run it."""
+    interrupts.listen()
+    from debrisest.cli import main as run
+
+    try:
+        run()
+    finally:
+        interrupts.ignore()
+
 
 if __name__ == "__main__":
     main()

@@ -18,6 +18,11 @@ class Stream(IntEnum):
     INITIAL_ERROR = 3
 
 
+def case_key(case: str) -> int:
+    """Return the part of a run's seed that tells a case from the others of its scenario."""
+    return zlib.crc32(case.encode())
+
+
 class Draws:
     """Draws for a batch of runs; the batch is the first axis of everything that is returned.
 
@@ -27,7 +32,7 @@ class Draws:
 
     def __init__(self, seed: int, case: str, runs: Sequence[int]) -> None:
         self.runs = list(runs)
-        self._entropy = (seed, zlib.crc32(case.encode()))
+        self._entropy = (seed, case_key(case))
         self._generators: dict[Stream, list[np.random.Generator]] = {}
 
     def normal(self, stream: Stream, shape: tuple[int, ...]) -> Array:

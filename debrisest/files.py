@@ -33,7 +33,9 @@ def remove_leftovers(folder: Path) -> None:
 
 
 def _runs(process: str) -> bool:
-    """Return whether a process is there and not a zombie."""
+    """Return whether a process is there and not a zombie; where that is unknown, it may be."""
+    if not Path("/proc/self/stat").exists():
+        return True
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
     except (OSError, IndexError):

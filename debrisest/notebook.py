@@ -24,6 +24,7 @@ from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.scenario.schema import ScenarioFile, scenario_model
 from debrisest.shipped import scenario_path
+from debrisest.show.tables.published import check_published
 from debrisest.show.tables.tabulate import chosen, tabulate, write_tables
 
 
@@ -36,7 +37,10 @@ def load(
     Raises UserError with every problem of the file.
     """
     own_parts = read_plugins(map(Path, plugins))
-    overrides = [f"{key}={json.dumps(value, default=_plain)}" for key, value in settings.items()]
+    overrides = [
+        f"{key}={json.dumps(value, default=_plain, ensure_ascii=False)}"
+        for key, value in settings.items()
+    ]
     return load_scenario(scenario_path(Path(config)), overrides, own_parts)
 
 
@@ -61,6 +65,7 @@ def run(
         scenario = load(scenario)
     selection = Selection(runs, cases, estimators, force=force)
     check_selection([scenario], selection)
+    check_published(scenario)
     bring_up_to_date([scenario], Path(out), selection, Machine(jobs, quiet=quiet))
     rows, _ = tabulate(scenario, Path(out), plan(scenario, Path(out), Selection(runs)))
     if rows.empty and scenario.common.measured is None:

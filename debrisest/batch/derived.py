@@ -16,7 +16,8 @@ from debrisest.batch.observability import lost_directions
 from debrisest.dynamics import log_inertia
 from debrisest.dynamics.nutation import nutation
 
-_LOOSEST_AXIS = np.radians(10.0)
+LOOSEST_AXIS = np.radians(10.0)
+"""Sigma of a direction from which on it is undefined."""
 _LOOSEST_SHARE = 0.5  # sigma of a number over itself
 _SIDES = ((1, 2), (2, 0), (0, 1))  # about which a principal axis pair turns
 _STEP = 1e-6
@@ -59,7 +60,7 @@ def derived(arc: Arc, covariance: Array) -> Derived:
     axes = axes * np.sign(np.linalg.det(axes))
     tilt = _axis_sigmas(moments, axes, covariance)
     lost = lost_directions(covariance) > 0
-    vague = (tilt > _LOOSEST_AXIS) | (lost & (tilt > 0.1 * _LOOSEST_AXIS))
+    vague = (tilt > LOOSEST_AXIS) | (lost & (tilt > 0.1 * LOOSEST_AXIS))
     shares, share_sigma = _spread(arc, covariance, _shares)
     rates, rate_sigma = _spread(arc, covariance, lambda moved: _axis_rates(moved, axes))
     nutates, nutate_sigma = _spread(arc, covariance, _nutation)
@@ -98,7 +99,7 @@ def _direction(arc: Arc, covariance: Array, of: Callable[[Arc], Array]) -> Quant
         return np.asarray(vector / max(float(np.linalg.norm(vector)), 1e-300))
 
     value, sigma = _spread(arc, covariance, unit)
-    sure = np.linalg.norm(sigma) < _LOOSEST_AXIS
+    sure = np.linalg.norm(sigma) < LOOSEST_AXIS
     return Quantity(value if sure else np.full(3, np.nan), sigma)
 
 

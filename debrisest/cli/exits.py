@@ -1,4 +1,4 @@
-"""How a command ends: 0 all well, 1 something is wrong, 2 wrong input, 130 interrupted."""
+"""How a command ends: 0 well, 1 something is wrong, 2 wrong input, 130 or 143 interrupted."""
 
 import errno
 import sys
@@ -7,6 +7,7 @@ from typing import Any
 from typer.core import TyperGroup
 
 from debrisest.errors import UserError
+from debrisest.interrupts import SENTENCE
 
 
 class Commands(TyperGroup):
@@ -22,8 +23,8 @@ class Commands(TyperGroup):
             if error.errno == errno.EPIPE:
                 raise
             _stop(2, _sentence(error))
-        except KeyboardInterrupt:
-            _stop(130, "interrupted: finished steps are kept, the same command goes on from there")
+        except KeyboardInterrupt as error:
+            _stop(getattr(error, "exit_code", 130), SENTENCE)
 
 
 def exit_if(wrong: bool) -> None:

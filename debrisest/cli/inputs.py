@@ -17,7 +17,7 @@ def load_all(
     from debrisest.plugins.load import load_plugins, read_plugins
     from debrisest.scenario.load import load_scenario
     from debrisest.shipped import scenario_path
-    from debrisest.show.tables.published import published_values
+    from debrisest.show.tables.published import check_published
 
     own_parts = read_plugins(plugins or ())
     load_plugins(own_parts)
@@ -25,14 +25,14 @@ def load_all(
     for config in configs:
         try:
             scenarios.append(load_scenario(scenario_path(config), settings or (), own_parts))
-            published_values(scenarios[-1])
+            check_published(scenarios[-1])
         except UserError as error:
             problems += error.problems
-    stems = [path.stem for path in configs]
+    stems = [path.stem.casefold() for path in configs]
     problems += [
         f"{path}: another scenario is called {path.stem} too; results would be mixed"
         for path in configs
-        if stems.count(path.stem) > 1
+        if stems.count(path.stem.casefold()) > 1
     ]
     if problems:
         raise UserError(problems)

@@ -119,7 +119,8 @@ def show_tables(
             more = f" (and {len(stale) - 1} more)" if len(stale) > 1 else ""
             print(f"left out of the tables: {step.name}: {step.reason}{more}", file=sys.stderr)
         if not rows.empty:
-            write_tables(scenario, out, rows)
+            for sentence in write_tables(scenario, out, rows):
+                print(sentence, file=sys.stderr)
             shown.append((scenario, chosen(rows, asked)))
         wrong += unexpected(scenario, rows, asked)
     if shown and form is not None:

@@ -100,6 +100,7 @@ def bring(
     dry_run: bool,
 ) -> bool:
     """Run what has a reason to, or tell it; return whether a run gave no result."""
+    from debrisest.errors import printable
     from debrisest.runner.plan import plan
     from debrisest.runner.sweep import bring_up_to_date
 
@@ -112,5 +113,5 @@ def bring(
         return False
     failures = bring_up_to_date(scenarios, out, selection, machine)
     for name, why in failures.items():
-        print(f"{name} failed: {why}", file=sys.stderr)
+        print(printable(f"{name} failed: {why}"), file=sys.stderr)
     return bool(failures)

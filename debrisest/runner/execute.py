@@ -1,18 +1,8 @@
 """Run the steps of a plan on any ``concurrent.futures.Executor``, resuming from files."""
 
 import json
-import multiprocessing
-import signal
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    wait,
-)
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,59 +20,6 @@ class Outcome(NamedTuple):
 
     step: Step
     error: str = ""
-
-
-class InProcess(Executor):
-    """An executor that computes at once, in this process."""
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Compute now and return a finished future."""
-        future: Future[Any] = Future()
-        try:
-            future.set_result(fn(*args, **kwargs))
-        except Exception as error:
-            future.set_exception(error)
-        return future
-
-
-class WorkerPool(ProcessPoolExecutor):
-    """Spawned processes that leave Ctrl-C to this one: they start with it blocked."""
-
-    def __init__(self, jobs: int) -> None:
-        super().__init__(jobs, mp_context=multiprocessing.get_context("spawn"))
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Submit as the pool does, starting workers with Ctrl-C blocked."""
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        try:
-            return super().submit(fn, *args, **kwargs)
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-    def __exit__(self, *error: Any) -> None:
-        """Wait for the workers, or end them where an error leaves the pool."""
-        if error[0] is None:
-            self.shutdown()
-            return
-        self.shutdown(wait=False, cancel_futures=True)
-        for process in multiprocessing.active_children():
-            process.terminate()
-
-
-@contextmanager
-def executor(jobs: int, address: str | None = None) -> Iterator[tuple[Executor, int]]:
-    """Yield an executor and how many steps it computes at a time.
-
-    It is this process, a pool of ``jobs`` spawned ones, or a dask cluster.
-    """
-    if address is not None:
-        from debrisest.runner.cluster import dask_executor
-
-        with dask_executor(address) as cluster:
-            yield cluster
-    else:
-        with InProcess() if jobs == 1 else WorkerPool(jobs) as pool:
-            yield pool, jobs
 
 
 def execute(steps: Sequence[Step], pool: Executor, width: int) -> Iterator[Outcome]:

@@ -54,7 +54,7 @@ def _bar(steps: int) -> Iterator[Progress]:
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bars
 
-    last = TextColumn("{task.fields[last]}")
+    last = TextColumn("{task.fields[last]}", markup=False)
     columns = BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), last
     with Bars(*columns, console=Console(stderr=True)) as bars:
         task = bars.add_task("steps", total=steps, last="")
@@ -64,6 +64,6 @@ def _bar(steps: int) -> Iterator[Progress]:
                 bars.update(task, advance=1, last=name)
 
             def say(self, text: str) -> None:
-                bars.console.print(text, highlight=False)
+                bars.console.print(text, highlight=False, markup=False)
 
         yield Bar()

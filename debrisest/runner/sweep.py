@@ -1,13 +1,15 @@
 """Bring scenarios up to date: plan, run what has a reason to run, tell what happened."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from debrisest.errors import UserError
 from debrisest.files import remove_leftovers
+from debrisest.interrupts import raised
 from debrisest.results.open import find_results
-from debrisest.runner.execute import execute, executor
+from debrisest.runner.execute import execute
+from debrisest.runner.executors import executor
 from debrisest.runner.plan import Selection, Step, plan
 from debrisest.runner.progress import Progress, progress
 from debrisest.scenario.load import LoadedScenario
@@ -34,11 +36,11 @@ def bring_up_to_date(
         remove_leftovers(out / scenario.name)
     steps = [step for scenario in scenarios for step in plan(scenario, out, selection)]
     due = [step for step in steps if step.reason]
-    with progress(len(due), machine.quiet) as told:
+    with raised() as check, progress(len(due), machine.quiet) as told:
         for step in due:
             if step.notice:
                 told.say(step.notice)
-        errors = _run(steps, machine, told) if due else {}
+        errors = _run(steps, machine, told, check) if due else {}
     for scenario in scenarios:
         results = find_results(out / scenario.name)
         written = {step.address: step.runs for step in steps if step.name not in errors}
@@ -47,11 +49,14 @@ def bring_up_to_date(
     return errors
 
 
-def _run(steps: list[Step], machine: Machine, told: Progress) -> dict[str, str]:
+def _run(
+    steps: list[Step], machine: Machine, told: Progress, check: Callable[[], None]
+) -> dict[str, str]:
     """Run what is due; return the steps that wrote no file, with reasons."""
     errors: dict[str, str] = {}
     with executor(machine.jobs, machine.cluster) as (pool, width):
         for outcome in execute(steps, pool, width):
+            check()
             told.done(outcome.step.name)
             if outcome.error:
                 errors[outcome.step.name] = outcome.error

@@ -13,12 +13,11 @@ from debrisest.scenario.contracts import Found, parts_that_do_not_fit
 from debrisest.scenario.document import KeyPath
 from debrisest.scenario.kept import kept_too_late, not_kept
 from debrisest.scenario.mistakes import allowed_names
+from debrisest.scenario.names import same_on_disk
 from debrisest.scenario.schema import Scenario, Table, window_of
 from debrisest.vocabulary import VOCABULARY
 
 MOST_EPOCHS = 10_000_000
-RESERVED = ("plots", "tables.csv", "tables.md", "tables.tex")
-"""Names beside the folders of the cases."""
 _TOO_MUCH = "two epochs of one run take more memory than there is; a number here is far too large"
 
 
@@ -50,12 +49,12 @@ def file_problems(cases: Mapping[str, Case]) -> Found:
     first = next(iter(cases.values())).scenario
     for name, case in cases.items():
         scenario = case.scenario
-        if name in RESERVED:
-            yield ("cases", name), "this name is taken by a file of results; choose another"
         if list(scenario.estimators) != list(first.estimators):
             yield ("cases", name), "all cases of a scenario must have the same estimators"
         if scenario.tables != first.tables:
             yield ("cases", name, "tables"), "tables belong to the whole file, not to a case"
+    for name, why in same_on_disk(first.estimators):
+        yield ("estimators", name), why
     yield from _unknown_cases(first, list(cases))
     refused = (found for case in cases.values() for found in _parts_that_refuse(case))
     yield from dict.fromkeys(refused)

@@ -10,7 +10,10 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from debrisest.scenario.names import UNCARRIED
+
 KeyPath = tuple[str | int, ...]
+MOST_VALUES = 300_000
 
 
 class Place(NamedTuple):
@@ -68,23 +71,27 @@ for _tag, _pattern, _first in (
 def parse(text: str, source: str) -> tuple[Document, list[Problem]]:
     """Parse YAML text whose top level is a mapping; ``source`` names it in messages."""
     start = Place(source, 1, 1)
-    problems: list[Problem] = []
     places: dict[KeyPath, Place] = {(): start}
     try:
         loader = _Loader(text)
-        node = loader.get_single_node()
-        value = _construct(loader, node, (), places, problems, source)
+        reader = _Reader(loader, source, places)
+        value = reader.value(loader.get_single_node(), ())
     except yaml.MarkedYAMLError as error:
         return Document({}, places), [Problem(_place(source, error.problem_mark), _said(error))]
     except RecursionError:
         return Document({}, places), [Problem(start, "not valid YAML: nested too deeply")]
-    except yaml.YAMLError as error:
+    except yaml.reader.ReaderError as error:
+        lines = text[: error.position].split("\n")
+        place = Place(source, len(lines), len(lines[-1]) + 1)
+        said = f"not a YAML text: it has the character U+{int(error.character):04X}; leave it out"
+        return Document({}, places), [Problem(place, said)]
+    except (yaml.YAMLError, ValueError) as error:
         return Document({}, places), [Problem(start, f"not a YAML text: {error}".split("\n")[0])]
     if not isinstance(value, dict):
         found = "the file is empty" if value is None else f"found {value!r}"[:60]
         message = f"expected a mapping of keys (title, seed, target, ...), {found}"
-        return Document({}, places), [*problems, Problem(start, message)]
-    return Document(value, places), problems
+        return Document({}, places), [*reader.problems, Problem(start, message)]
+    return Document(value, places), reader.problems
 
 
 def merge(base: Document, over: Document) -> Document:
@@ -114,47 +121,67 @@ def _merge_values(base: Any, over: Any) -> Any:
     return base | {key: _merge_values(base.get(key), value) for key, value in over.items()}
 
 
-def _construct(
-    loader: _Loader,
-    node: Any,
-    path: KeyPath,
-    places: dict[KeyPath, Place],
-    problems: list[Problem],
-    source: str,
-) -> Any:
-    if isinstance(node, yaml.SequenceNode):
+@dataclass
+class _Reader:
+    """Makes plain data of YAML nodes, noting the place of every key and what is wrong."""
+
+    loader: _Loader
+    source: str
+    places: dict[KeyPath, Place]
+    problems: list[Problem] = field(default_factory=list)
+    read: int = 0
+
+    def value(self, node: Any, path: KeyPath) -> Any:
+        """Return the value of a node; raise ValueError where aliases make it far too large."""
+        self.read += 1
+        if self.read > MOST_VALUES:
+            raise ValueError(
+                f"more than {MOST_VALUES} values, aliases (*name) written out; such a file is "
+                "a mistake, or larger than a scenario can be"
+            )
+        if isinstance(node, yaml.MappingNode):
+            return self._mapping(node, path)
+        if not isinstance(node, yaml.SequenceNode):
+            return None if node is None else self._scalar(node)
         for index, item in enumerate(node.value):
-            places[(*path, index)] = _place(source, item.start_mark)
-        return [
-            _construct(loader, item, (*path, index), places, problems, source)
-            for index, item in enumerate(node.value)
-        ]
-    if not isinstance(node, yaml.MappingNode):
-        return None if node is None else _scalar(loader, node, problems, source)
-    value: dict[str, Any] = {}
-    for key_node, value_node in node.value:
-        place = _place(source, key_node.start_mark)
-        if not isinstance(key_node, yaml.ScalarNode):
-            problems.append(Problem(place, "a key must be a text, not a list or a mapping"))
-            continue
-        key = str(key_node.value)
-        if key in value:
-            first = places[(*path, key)].line
-            problems.append(Problem(place, f"{key}: this key was already given in line {first}"))
-            continue
-        places[(*path, key)] = place
-        value[key] = _construct(loader, value_node, (*path, key), places, problems, source)
-    return value
+            self.places[(*path, index)] = _place(self.source, item.start_mark)
+        return [self.value(item, (*path, index)) for index, item in enumerate(node.value)]
 
+    def _mapping(self, node: Any, path: KeyPath) -> dict[str, Any]:
+        value: dict[str, Any] = {}
+        for key_node, value_node in node.value:
+            place = _place(self.source, key_node.start_mark)
+            if not isinstance(key_node, yaml.ScalarNode):
+                message = "a key must be a text, not a list or a mapping"
+                self.problems.append(Problem(place, message))
+                continue
+            key = self._carried(str(key_node.value), place)
+            if key in value:
+                first = self.places[(*path, key)].line
+                message = f"{key}: this key was already given in line {first}"
+                self.problems.append(Problem(place, message))
+                continue
+            self.places[(*path, key)] = place
+            value[key] = self.value(value_node, (*path, key))
+        return value
 
-def _scalar(loader: _Loader, node: Any, problems: list[Problem], source: str) -> Any:
-    try:
-        return loader.construct_object(node, deep=True)
-    except (ValueError, KeyError, AttributeError):
-        tag = node.tag.rpartition(":")[2]
-        place = _place(source, node.start_mark)
-        problems.append(Problem(place, f"{str(node.value)[:40]!r} is not a value of type {tag}"))
-        return None
+    def _scalar(self, node: Any) -> Any:
+        place = _place(self.source, node.start_mark)
+        try:
+            value = self.loader.construct_object(node, deep=True)
+        except (ValueError, KeyError, AttributeError):
+            tag = node.tag.rpartition(":")[2]
+            message = f"{str(node.value)[:40]!r} is not a value of type {tag}"
+            self.problems.append(Problem(place, message))
+            return None
+        return self._carried(value, place) if isinstance(value, str) else value
+
+    def _carried(self, text: str, place: Place) -> str:
+        """Return a text without the characters that nothing can carry, each a problem."""
+        for code in dict.fromkeys(map(ord, UNCARRIED.findall(text))):
+            message = f"{text[:40]!r} has the character U+{code:04X}, which no file can carry; "
+            self.problems.append(Problem(place, message + "leave it out"))
+        return UNCARRIED.sub("", text)
 
 
 def _place(source: str, mark: Any) -> Place:

@@ -2,7 +2,7 @@
 
 import itertools
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import reduce
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,6 +22,7 @@ from debrisest.scenario.document import (
 )
 from debrisest.scenario.measured import told_by_data
 from debrisest.scenario.mistakes import allowed_names, validated
+from debrisest.scenario.names import case_name_problems, check_scenario_name
 from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
 
 NOMINAL = "nominal"
@@ -29,6 +30,9 @@ NOMINAL = "nominal"
 
 _NAMED = ("observers", "sensors", "starts", "estimators")
 """Keys whose entries have names of the user's choice."""
+
+
+MOST_BYTES = 20_000_000
 
 
 class LoadedScenario(NamedTuple):
@@ -52,6 +56,7 @@ def load_scenario(
     path: Path, overrides: Sequence[str] = (), plugins: tuple[Plugin, ...] = ()
 ) -> LoadedScenario:
     """Return the cases of a scenario file, or raise UserError with every problem of it."""
+    check_scenario_name(path)
     loaded = load_plugins(plugins)
     document, problems = parse(_read(path), str(path))
     if problems and not document.value:
@@ -61,7 +66,9 @@ def load_scenario(
     listed, found = validated(Document(own, document.places), CasesAndGrid, path.parent)
     problems += found
     cases: dict[str, Case] = {}
-    for name, case_document in _case_documents(document, listed or CasesAndGrid()).items():
+    documents = _case_documents(document, listed or CasesAndGrid())
+    problems += _placed(document, _case_name_problems(documents, listed or CasesAndGrid()))
+    for name, case_document in documents.items():
         complete, wrong = told_by_data(reduce(merge, laid_on, case_document), path.parent)
         scenario, found = validated(complete, scenario_model(), path.parent)
         problems += wrong + found
@@ -77,12 +84,15 @@ def load_scenario(
 
 def _read(path: Path) -> str:
     try:
-        raw = path.read_bytes()
+        with path.open("rb") as file:
+            raw = file.read(MOST_BYTES + 1)
     except IsADirectoryError:
         raise UserError(f"{path}: this is a folder; give a scenario file (YAML)") from None
     except OSError as error:
         reason = error.strerror or "cannot be read"
         raise UserError(f"{path}: {reason}; give the path of a scenario file (YAML)") from None
+    if len(raw) > MOST_BYTES:
+        raise UserError(f"{path}: over {MOST_BYTES // 10**6} MB; give a scenario file (YAML)")
     try:
         return raw.decode("utf-8")
     except UnicodeDecodeError as error:
@@ -139,6 +149,13 @@ def _case_documents(document: Document, listed: CasesAndGrid) -> dict[str, Docum
         for case, whole in cases.items()
         for name, over in points
     }
+
+
+def _case_name_problems(
+    documents: Iterable[str], listed: CasesAndGrid
+) -> Iterator[tuple[KeyPath, str]]:
+    for name, why in case_name_problems(documents):
+        yield ("cases", name) if name in listed.cases else ("grid",), why
 
 
 def _combinations(grid: dict[str, list[Any]]) -> list[dict[str, Any]]:

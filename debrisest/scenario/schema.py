@@ -22,6 +22,7 @@ from debrisest.roles import (
     StartPart,
     Window,
 )
+from debrisest.scenario.names import CaseName, Line, PartName, TableName
 from debrisest.vocabulary import VOCABULARY, possible_units
 
 _NUMBER = r"(\d+(?:\.\d+)?)"
@@ -84,8 +85,8 @@ class Table(Keys):
     What was simulated has no estimator.
     """
 
-    table: str = Field(description="the paper's number, or a short word")
-    title: str
+    table: TableName = Field(description="the paper's number, or a short word")
+    title: Line
     stage: Literal["simulate", "recover", "filter"]
     quantities: Annotated[list[QuantityName], Field(min_length=1)]
     statistics: Annotated[list[StatisticName], Field(min_length=1)]
@@ -111,7 +112,7 @@ class Tables(Keys):
     published: str | None = Field(None, description="CSV of published values, beside the scenario")
     scored_window: WindowText | None = Field(None, description="where axes are relabeled")
     diverged: list[Divergence] = []
-    means: dict[str, list[str]] = Field({}, description="name of a mean: its cases")
+    means: dict[CaseName, list[str]] = Field({}, description="name of a mean: its cases")
     layout: list[Table] = []
 
 
@@ -139,9 +140,6 @@ class Estimator(Keys):
         return self
 
 
-_NAME = Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.+=,-]{0,99}$")]
-
-
 TOLD_BY_DATA = ("seed", "runs", "duration_s")
 """Keys of a simulation that measured data tell."""
 SIMULATED = (*TOLD_BY_DATA, "step_s", "target", "orbit", "motion", "observers", "sensors")
@@ -151,8 +149,8 @@ SIMULATED = (*TOLD_BY_DATA, "step_s", "target", "orbit", "motion", "observers", 
 class Scenario(Keys):
     """One case of a scenario, everything resolved."""
 
-    title: str
-    source: str = ""
+    title: Line
+    source: Line = ""
     seed: Annotated[int, Field(ge=0, lt=2**63)]
     runs: Annotated[int, Field(ge=1)]
     duration_s: Positive
@@ -164,7 +162,7 @@ class Scenario(Keys):
     observers: dict[str, SimulationPart] = {}
     sensors: dict[str, SimulationPart] = {}
     starts: dict[str, SimulationPart] = {}
-    estimators: dict[_NAME, Estimator]
+    estimators: dict[PartName, Estimator]
     tables: Tables = Tables()
 
     @property
@@ -205,7 +203,7 @@ class Measured(Keys):
 class CasesAndGrid(Keys):
     """The keys of a scenario file that make its cases."""
 
-    cases: dict[_NAME, dict[str, Any]] = Field({}, description="name: what differs in this case")
+    cases: dict[CaseName, dict[str, Any]] = Field({}, description="name: what differs in this case")
     grid: dict[str, Annotated[list[Any], Field(min_length=1)]] = Field(
         {}, description="key.path: values; every combination is a case"
     )
@@ -242,7 +240,7 @@ def measured_model() -> Any:
 
 
 def _by_name(value: Any) -> Any:
-    return dict[_NAME, value]
+    return dict[PartName, value]
 
 
 def _kinds(role: str) -> Any:

@@ -316,7 +316,32 @@ BAD_CSV = {
     "short_row": (CSV + "1,slow,pitch\n", [":2: "]),
     "long_row": (CSV + "1,slow,pitch,rmse,0-60 s,1,1.6,,,better,worse\n", [":2: "]),
     "binary": (b"\x89\xff\x00\x01", []),
+    "row_twice": (CSV + 2 * "1,slow,pitch,rmse,0-60 s,1,2,,\n", [":3: ", "given in line 2"]),
+    "column_twice": (CSV.replace("wahba", "triad"), [":1: ", "'triad' is there 2 times"]),
+    "estimator": (CSV.replace("wahba", "whaba"), [":1: ", "'whaba'", "did you mean wahba?"]),
+    "table": (CSV + "3,slow,pitch,rmse,0-60 s,1,2,,\n", [":2: ", "no table '3'", "1, 2, filter"]),
+    "case": (CSV + "1,slwo,pitch,rmse,0-60 s,1,2,,\n", [":2: ", "no case", "mean slow?"]),
+    "quantity": (CSV + "2,slow,pich,rmse,end,1,2,,\n", [":2: ", "no quantity", "mean pitch?"]),
+    "statistic": (CSV + "2,slow,pitch,rsme,end,1,2,,\n", [":2: ", "no statistic", "mean rmse?"]),
+    "window": (CSV + "1,slow,pitch,rmse,end,1,2,,\n", [":2: ", "'end' in table 1", "0-60 s"]),
+    "verdict": (CSV + "1,slow,pitch,rmse,0-60 s,1,2,beter,\n", [":2: ", "mean better?"]),
 }
+
+
+def test_every_mistake_of_published_values_is_told(small: Path, cli: Any) -> None:
+    rows = "1,slwo,pitch,rmse,0-60 s,1,2,,\n1,slow,pich,rmse,0-60 s,1,2,,\n"
+    small.with_name("small.csv").write_text(CSV + rows)
+    told = cli("validate", small).stderr.splitlines()
+    assert [line.split(":")[1] for line in told] == ["2", "3"]
+
+
+@pytest.mark.parametrize("published", ["/dev/zero", ".", "/dev/null/x"])
+def test_published_values_are_a_file(published: str, small: Path, cli: Any) -> None:
+    edited(small, "published: small.csv", f"published: {published}")
+    result = cli("validate", small)
+    assert result.exit_code == 2
+    assert "published values" in result.stderr
+    assert len(result.stderr.splitlines()) == 1
 
 
 @pytest.mark.parametrize("name", BAD_CSV)

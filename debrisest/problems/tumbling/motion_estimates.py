@@ -5,8 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from debrisest.arrays import Array, Data
+from debrisest.attitude import quaternion
+from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.batch.arc import INERTIA, RATE, TURN, UNKNOWNS, Arc, course, moved
-from debrisest.batch.derived import derived
+from debrisest.batch.derived import LOOSEST_AXIS, derived
 from debrisest.batch.motion import Motion
 from debrisest.batch.observability import lost_directions
 from debrisest.batch.path import Path
@@ -119,7 +121,8 @@ def _at_end(motion: Motion, times: Array) -> Data:
         "speed_end_sigma": speed_sigma[-1],
         "mean_speed": np.nanmean(speed) if np.isfinite(speed).any() else np.asarray(np.nan),
         "mean_speed_sigma": _of_mean(speed_sigma),
-    } | _undefined()
+    }
+    result |= _undefined() | _spin_axis(motion.path)
     if motion.arc is None or not motion.status.accepted:
         return {name: np.asarray(value, dtype=np.float64) for name, value in result.items()}
     arc = moved(motion.arc, float(times[-1]))
@@ -138,6 +141,22 @@ def _at_end(motion: Motion, times: Array) -> Data:
         "moment_share_sigma": found.moments.sigma,
     }
     return {name: np.asarray(value, dtype=np.float64) for name, value in result.items()}
+
+
+def _spin_axis(path: Path) -> Data:
+    """Direction of the rate at the last epoch, inertial, NaN if it may be off by over 10 deg."""
+    turn = quaternion.to_matrix(path.q[-1])
+    rate = turn @ path.rate[-1]
+    by_turn = matrix_of_cross(rate)
+    spread = (
+        turn @ path.rate_covariance[-1] @ turn.T + by_turn @ path.turn_covariance[-1] @ by_turn.T
+    )
+    speed = max(float(np.linalg.norm(rate)), np.finfo(float).tiny)
+    axis = rate / speed
+    across = (np.eye(3) - np.outer(axis, axis)) / speed
+    sigma = np.sqrt(np.maximum(np.diag(across @ spread @ across), 0.0))
+    sure = np.linalg.norm(sigma) < LOOSEST_AXIS
+    return {"spin_axis_i": axis if sure else np.full(3, np.nan), "spin_axis_i_sigma": sigma}
 
 
 def _undefined() -> Data:

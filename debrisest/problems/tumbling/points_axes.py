@@ -32,10 +32,11 @@ def in_principal_axes(state: Array) -> Data:
     logs = (np.abs(labels) @ logs[..., None])[..., 0]
     q_fb = quaternion.from_matrix(axes)
     moments = np.exp(logs)
+    q_fb = np.where(np.isnan(logs[..., :1]), np.nan, q_fb)
     return {
         "q_ib": quaternion.multiply(state[..., body.Q], q_fb),
-        "q_bf": np.where(np.isnan(logs[..., :1]), np.nan, quaternion.conjugate(q_fb)),
-        "rate_b": (state[..., None, body.RATE] @ axes)[..., 0, :],
+        "q_bf": quaternion.conjugate(q_fb),
+        "rate_b": (state[..., None, body.RATE] @ quaternion.to_matrix(q_fb))[..., 0, :],
         "moments_b": moments / np.linalg.norm(moments, axis=-1, keepdims=True),
     }
 

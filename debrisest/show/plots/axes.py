@@ -23,7 +23,7 @@ def unit(name: str) -> str:
 
 def heading(top: Axes, title: str, context: str) -> None:
     """Write the title above all axes, and below it in grey what the figure was drawn from."""
-    lines = textwrap.wrap(context, _HEADING_COLUMNS)
+    lines = textwrap.wrap(context.replace("$", r"\$"), _HEADING_COLUMNS)
     top.set_title("\n".join(lines), pad=6)
     top.annotate(
         title,

@@ -5,15 +5,21 @@ with its expected verdict, alternatives separated by ``|``. ``factor`` is the to
 """
 
 import csv
+from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from debrisest.errors import UserError
+from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
+from debrisest.scenario.mistakes import allowed_names
+from debrisest.scenario.schema import Table
 from debrisest.show.tables.verdict import Verdict
 
 _COLUMNS = ("table", "case", "quantity", "statistic", "window", "published", "factor")
+
+_LISTS = {"quantity": "quantities", "statistic": "statistics", "window": "windows"}
 
 
 class CellKey(NamedTuple):
@@ -34,41 +40,126 @@ class Published(NamedTuple):
     expected: dict[str, list[Verdict]]
 
 
+class PublishedFile(NamedTuple):
+    """What a file of published values holds, and the line of each value."""
+
+    path: Path
+    estimators: list[str]
+    values: dict[CellKey, Published]
+    lines: dict[CellKey, int]
+
+
 def published_values(scenario: LoadedScenario) -> dict[CellKey, Published]:
     """Return the published values that a scenario names, if it names any."""
-    file = scenario.common.tables.published
-    return load_published(scenario.path.parent / file) if file else {}
+    file = _published_file(scenario)
+    return file.values if file else {}
 
 
-def load_published(path: Path) -> dict[CellKey, Published]:
-    """Return the published values by cell, or raise UserError with the line that is wrong."""
+def check_published(scenario: LoadedScenario) -> None:
+    """Raise UserError for cells and estimators that a scenario does not have."""
+    file = _published_file(scenario)
+    if file is None:
+        return
+    known = [*scenario.common.estimators, SIMULATED]
+    problems = [
+        f"{file.path}:1: no estimator of {scenario.path} is called {name!r}; "
+        f"{allowed_names(name, known)}"
+        for name in file.estimators
+        if name not in known
+    ]
+    for key, line in file.lines.items():
+        if said := _unknown_cell(key, scenario):
+            problems.append(f"{file.path}:{line}: {said}")
+    if problems:
+        raise UserError(problems)
+
+
+def _published_file(scenario: LoadedScenario) -> PublishedFile | None:
+    name = scenario.common.tables.published
+    return load_published(scenario.path.parent / name) if name else None
+
+
+def load_published(path: Path) -> PublishedFile:
+    """Return the published values by cell, or raise UserError with every line that is wrong."""
+    rows = _read(path)
+    header = rows[0][1] if rows else []
+    problems = [f"{path}:1: {said}" for said in _wrong_columns(header)]
+    values: dict[CellKey, Published] = {}
+    lines: dict[CellKey, int] = {}
+    for line, row in rows[1:] if not problems else ():
+        try:
+            key, value = _parse(header, row)
+            if lines.setdefault(key, line) != line:
+                raise ValueError(f"this cell was given in line {lines[key]} already")
+            values[key] = value
+        except ValueError as error:
+            problems.append(f"{path}:{line}: {error}")
+    if problems:
+        raise UserError(problems)
+    return PublishedFile(path, [name for name in header if name not in _COLUMNS], values, lines)
+
+
+def _read(path: Path) -> list[tuple[int, list[str]]]:
+    """Return the rows that are not empty, with their lines."""
     try:
+        if path.exists() and not path.is_file():
+            raise UserError(f"{path}: published values must be a CSV file; this is none")
         with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = csv.DictReader(file)
-            fields = rows.fieldnames or []
-            missing = [column for column in _COLUMNS if column not in fields]
-            if missing:
-                raise UserError(f"{path}:1: missing column {', '.join(missing)}")
-            return dict(_parse(path, rows.line_num, row) for row in rows)
+            rows = csv.reader(file)
+            return [(rows.line_num, row) for row in rows if row]
     except OSError as error:
         raise UserError(f"{path}: published values cannot be read: {error.strerror}") from None
     except (UnicodeDecodeError, csv.Error):
         raise UserError(f"{path}: published values must be a CSV file in UTF-8") from None
 
 
-def _parse(path: Path, line: int, row: dict[Any, Any]) -> tuple[CellKey, Published]:
-    if None in row or None in row.values():
-        raise UserError(f"{path}:{line}: this row has more or fewer fields than the first line")
-    key = CellKey(*(row[column] for column in CellKey._fields))
-    try:
-        value, factor = float(row["published"]), float(row["factor"])
-        if not (isfinite(value) and isfinite(factor) and value > 0 and factor >= 1):
-            raise ValueError("published must be positive and factor at least 1")
-        expected = {
-            name: [Verdict(word) for word in words.split("|")]
-            for name, words in row.items()
-            if name not in _COLUMNS and words
-        }
-    except ValueError as error:
-        raise UserError(f"{path}:{line}: {error}") from None
+def _wrong_columns(header: list[str]) -> Iterator[str]:
+    missing = [column for column in _COLUMNS if column not in header]
+    if missing:
+        yield f"missing column {', '.join(missing)}"
+    for column in sorted({column for column in header if header.count(column) > 1}):
+        yield f"the column {column!r} is there {header.count(column)} times"
+
+
+def _parse(header: list[str], row: list[str]) -> tuple[CellKey, Published]:
+    if len(row) != len(header):
+        raise ValueError(f"this row has {len(row)} fields, the first line {len(header)}")
+    named = dict(zip(header, row))
+    key = CellKey(*(named[column] for column in CellKey._fields))
+    value, factor = float(named["published"]), float(named["factor"])
+    if not (isfinite(value) and isfinite(factor) and value > 0 and factor >= 1):
+        raise ValueError("published must be positive and factor at least 1")
+    expected = {
+        name: [_verdict(word) for word in words.split("|")]
+        for name, words in named.items()
+        if name not in _COLUMNS and words
+    }
     return key, Published(value, factor, expected)
+
+
+def _verdict(word: str) -> Verdict:
+    if word not in list(Verdict):
+        raise ValueError(f"unknown verdict {word!r}; {allowed_names(word, Verdict)}")
+    return Verdict(word)
+
+
+def _unknown_cell(key: CellKey, scenario: LoadedScenario) -> str:
+    """Return the field by which a cell is none of the scenario's tables; nothing if it is one."""
+    tables = scenario.common.tables
+    every = [*scenario.cases, *tables.means]
+    fitting = list(tables.layout)
+    for field, given in key._asdict().items():
+        has = [_values(field, table, every) for table in fitting]
+        fitting = [table for table, values in zip(fitting, has) if given in values]
+        if not fitting:
+            allowed = dict.fromkeys(value for values in has for value in values)
+            here = "" if field == "table" else f" in table {key.table}"
+            return f"no {field} {given!r}{here}; {allowed_names(given, allowed)}"
+    return ""
+
+
+def _values(field: str, table: Table, cases: list[str]) -> list[str]:
+    """Return what a field of a cell can be in a table of the layout."""
+    if field == "table":
+        return [table.table]
+    return (table.cases or cases) if field == "case" else list(getattr(table, _LISTS[field]))

@@ -6,10 +6,11 @@ from typing import Literal
 import pandas as pd
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 from debrisest.scenario.load import LoadedScenario
+from debrisest.show.tables.escapes import latex, markdown, paragraph
 from debrisest.show.tables.layout import Sheet, sheets
 from debrisest.show.tables.verdict import (
     CONSISTENCY,
@@ -18,6 +19,8 @@ from debrisest.show.tables.verdict import (
     LEGEND_OF_LOST,
 )
 
+MARK = "written by debrisest"
+"""What tells the files of tables from others of their name."""
 _COLOURS = {
     "=": "green",
     "<": "cyan",
@@ -53,13 +56,14 @@ def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
 
 
 def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    parts = [f"# {scenario.common.title}", scenario.common.source, *_legends(cells)]
+    common = scenario.common
+    parts = [f"# {markdown(common.title)}", paragraph(common.source), *_legends(cells)]
     for sheet in sheets(scenario, cells):
         lines = [sheet.heads, ["---"] * len(sheet.heads), *sheet.rows]
-        escaped = [[text.replace("|", "\\|") for text in line] for line in lines]
+        escaped = [[markdown(text) for text in line] for line in lines]
         body = "\n".join(f"| {' | '.join(line)} |" for line in escaped)
-        parts.append(f"## Table {sheet.number}: {sheet.title}\n\n{body}")
-    return "\n\n".join(part for part in parts if part) + "\n"
+        parts.append(f"## Table {sheet.number}: {markdown(sheet.title)}\n\n{body}")
+    return "\n\n".join(part for part in (*parts, f"<!-- {MARK} -->") if part) + "\n"
 
 
 def _legends(cells: pd.DataFrame) -> list[str]:
@@ -75,36 +79,28 @@ def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     parts = ["\n".join(f"% {text}" for text in (scenario.common.title, *legends))]
     for sheet in sheets(scenario, cells):
         head, *rows = (
-            " & ".join(_escaped(text) for text in line) + r" \\"
-            for line in (sheet.heads, *sheet.rows)
+            " & ".join(latex(text) for text in line) + r" \\" for line in (sheet.heads, *sheet.rows)
         )
         parts.append(
             "\\begin{table}\n"
-            f"\\caption{{{_escaped(_caption(sheet, legends))}}}\n"
+            f"\\caption{{{latex(_caption(sheet, legends))}}}\n"
             f"\\begin{{tabular}}{{{'l' * len(sheet.heads)}}}\n\\hline\n{head}\n\\hline\n"
             + "\n".join(rows)
             + "\n\\hline\n\\end{tabular}\n\\end{table}"
         )
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join((*parts, f"% {MARK}")) + "\n"
 
 
 def _caption(sheet: Sheet, legends: list[str]) -> str:
     return ". ".join([f"Table {sheet.number}: {sheet.title}", *legends])
 
 
-def _escaped(text: str) -> str:
-    text = text.replace("\\", r"\textbackslash ")
-    for character in "&%$#_{}":
-        text = text.replace(character, "\\" + character)
-    return text.replace("^", r"\^{}").replace("~", r"\~{}").replace("<", "$<$").replace(">", "$>$")
-
-
 def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     console = Console(width=110)
     with console.capture() as capture:
         for sheet in sheets(scenario, cells):
-            title = escape(f"Table {sheet.number}: {sheet.title}")
-            console.print(f"\n[bold]{title}[/]", soft_wrap=True)
+            title = Text(f"\nTable {sheet.number}: {sheet.title}", style="bold")
+            console.print(title, soft_wrap=True)
             console.print(_fitting(sheet, console))
         for text in _legends(cells):
             console.print(f"{text}\n", style="dim", soft_wrap=True)
@@ -126,7 +122,7 @@ def _rich_table(sheet: Sheet) -> Table:
     for head in sheet.heads:
         side: Literal["left", "right"] = "left" if head in ("case", "source") else "right"
         whole = head in ("case", "source")
-        table.add_column(escape(head), justify=side, overflow="fold", no_wrap=whole)
+        table.add_column(Text(head), justify=side, overflow="fold", no_wrap=whole)
     previous = ""
     for row in sheet.rows:
         shown = ["" if row[0] == previous and "source" in sheet.heads else row[0], *row[1:]]
@@ -135,9 +131,9 @@ def _rich_table(sheet: Sheet) -> Table:
     return table
 
 
-def _coloured(text: str) -> str:
+def _coloured(text: str) -> Text:
     colour = _COLOURS.get(text.rpartition(" ")[2]) if " " in text else None
-    return f"[{colour}]{escape(text)}[/]" if colour else escape(text)
+    return Text(text, style=colour or "")
 
 
 FORMS: dict[str, Callable[[LoadedScenario, pd.DataFrame], str]] = {

@@ -10,8 +10,8 @@ from debrisest.results.assessed import assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
-from debrisest.show.tables.cells import cells
-from debrisest.show.tables.render import render
+from debrisest.show.tables.cells import COLUMNS, cells
+from debrisest.show.tables.render import MARK, render
 
 
 def tabulate(
@@ -36,8 +36,21 @@ def chosen(rows: pd.DataFrame, asked: Callable[[str, str], bool]) -> pd.DataFram
     return rows[[asked(*of) for of in zip(rows["case"], rows["estimator"])]]
 
 
-def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> None:
-    """Write ``tables.csv`` and beside it the tables as in the paper."""
-    for form in ("csv", "md", "tex"):
-        with replacing(out / scenario.name / f"tables.{form}") as path:
+def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> list[str]:
+    """Write ``tables.csv`` and beside it the tables as in the paper.
+
+    A file of such a name that was not written by this is renamed; returns a sentence on each.
+    """
+    kept = []
+    for form, mark in (("csv", ",".join(COLUMNS)), ("md", MARK), ("tex", MARK)):
+        target = out / scenario.name / f"tables.{form}"
+        if not _ours(target, mark):
+            target.replace(own := target.with_name(f"{target.name}.old"))
+            kept.append(f"{target}: this file was not written by debrisest; it is now {own.name}")
+        with replacing(target) as path:
             path.write_text(render(scenario, rows, form), encoding="utf-8", newline="\n")
+    return kept
+
+
+def _ours(path: Path, mark: str) -> bool:
+    return not path.exists() or mark.encode() in path.read_bytes()

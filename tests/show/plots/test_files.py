@@ -1,5 +1,8 @@
 """Figures on disk."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -54,3 +57,19 @@ def test_long_series_make_small_drawings(tmp_path: Path) -> None:
 def test_short_series_stay_lines(tmp_path: Path) -> None:
     _, drawing = write(_figure(), tmp_path, "figure")
     assert "<image" not in drawing.read_text()
+
+
+@pytest.mark.parametrize(
+    "backend", ["module://matplotlib_inline.backend_inline", "nonsense", "tkagg", "svg"]
+)
+def test_the_backend_of_the_environment_plays_no_part(backend: str, tmp_path: Path) -> None:
+    code = (
+        "import sys; from pathlib import Path\n"
+        "from debrisest.show.plots.files import write; from matplotlib.figure import Figure\n"
+        "figure = Figure(); figure.subplots().plot([0, 1], [2, 3])\n"
+        "list(write(figure, Path(sys.argv[1]), 'figure'))"
+    )
+    environment = os.environ | {"MPLBACKEND": backend}
+    subprocess.run([sys.executable, "-c", code, tmp_path], env=environment, check=True)
+    ours = {path.name: path.read_bytes() for path in write(_figure(), tmp_path / "own", "figure")}
+    assert ours == {name: (tmp_path / name).read_bytes() for name in ours}

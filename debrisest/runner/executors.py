@@ -1,0 +1,95 @@
+"""Where steps are computed: in this process, in a pool of processes, or on a cluster."""
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from typing import Any
+
+UNGUARDED = (
+    "debrisest starts worker processes, and each of them imports your script: put the lines that "
+    'run something below  if __name__ == "__main__":  or use jobs=1'
+)
+
+
+class InProcess(Executor):
+    """An executor that computes at once, in this process."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Compute now and return a finished future."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+class WorkerPool(ProcessPoolExecutor):
+    """Spawned processes that leave Ctrl-C to this one, and end when it does."""
+
+    def __init__(self, jobs: int) -> None:
+        spawn = multiprocessing.get_context("spawn")
+        super().__init__(jobs, mp_context=spawn, initializer=_follow_parent)
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Submit as the pool does, starting workers with Ctrl-C blocked."""
+        with _blocked_ctrl_c():
+            return super().submit(fn, *args, **kwargs)
+
+    def __exit__(self, *error: Any) -> None:
+        """Wait for the workers, or end them where an error leaves the pool."""
+        if error[0] is None:
+            self.shutdown()
+            return
+        self.shutdown(wait=False, cancel_futures=True)
+        for process in multiprocessing.active_children():
+            process.terminate()
+
+
+@contextmanager
+def executor(jobs: int, address: str | None = None) -> Iterator[tuple[Executor, int]]:
+    """Yield an executor and how many steps it computes at a time.
+
+    It is this process, a pool of ``jobs`` spawned ones, or a dask cluster. A worker that imports
+    an unguarded script comes here as well, and ends with a sentence.
+    """
+    if address is not None:
+        from debrisest.runner.cluster import dask_executor
+
+        with dask_executor(address) as cluster:
+            yield cluster
+    else:
+        if jobs > 1 and getattr(multiprocessing.current_process(), "_inheriting", False):
+            raise SystemExit(UNGUARDED)
+        with InProcess() if jobs == 1 else WorkerPool(jobs) as pool:
+            yield pool, jobs
+
+
+@contextmanager
+def _blocked_ctrl_c() -> Iterator[None]:
+    """Block Ctrl-C where a process can: those that it starts begin with what it blocks."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _follow_parent() -> None:
+    """Ignore Ctrl-C in a worker, and end it when its parent ends, however that happens."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def wait() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=wait, daemon=True).start()

@@ -1,0 +1,98 @@
+"""Names and texts that later stages cannot carry are refused with their place and the reason."""
+
+import zlib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from debrisest.errors import UserError
+from debrisest.scenario.load import load_scenario
+
+# what is replaced, by what, words of the message
+REFUSED = {
+    "escape_in_a_title": (
+        "title: A small tumbling body", 'title: "\\e[31mA small"', ["small.yaml:1:8: ", "001B"],
+    ),
+    "nul_in_a_name": ("  wahba:", '  "wah\\0ba":', ["U+0000"]),
+    "lone_surrogate": (
+        "source: made for the tests", 'source: "\\ud800 made"', ["U+D800", "small.yaml:2:9: "],
+    ),
+    "raw_bell": ("made for", "made \x07 for", ["U+0007", "small.yaml:2:14: "]),
+    "dot_in_an_estimator": ("  wahba:", "  ukf.v2:", ["ukf.v2", "a dot separates keys"]),
+    "dot_in_a_sensor": ("  points: {kind", "  p.q: {kind", ["sensors.p.q", "dot"]),
+    "long_estimator": ("  wahba:", f"  {'w' * 60}:", ["at most 50", "60"]),
+    "long_case": ("  fast: {}", f"  {'f' * 101}: {{}}", ["at most 100", "101"]),
+    "capitals": ("  fast: {}", "  fast: {}\n  Slow: {}", ["cases.Slow", "'slow'", "case"]),
+    "capitals_of_estimators": ("  wahba:", "  Triad:", ["estimators.Triad", "'triad'"]),
+    "reserved": ("  fast: {}", "  fast: {}\n  Tables.MD: {}", ["taken by a file"]),
+    "formula": ('table: "2"', 'table: "=HYPERLINK(1)"', ["tables.layout.1.table", "=HYPERLINK"]),
+    "mean": ("    mean: [", '    "=1+1": [', ["tables.means.=1+1"]),
+    "nul_in_a_path": ("published: small.csv", 'published: "small\\0.csv"', ["U+0000"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_each_is_refused_with_place_and_reason(name: str, small: Path, cli: Any) -> None:
+    old, new, words = REFUSED[name]
+    text = small.read_text()
+    assert old in text
+    small.write_text(text.replace(old, new, 1))
+    result = cli("validate", small)
+    assert result.exit_code == 2
+    assert result.stderr.startswith(f"{small}:")
+    assert all(word in result.stderr for word in words), result.stderr
+    assert "\x1b" not in result.stderr
+
+
+@pytest.mark.parametrize("stem", [".", "..", "=cmd", "-x", "a\tb", "x" * 101, "a.", "\udcff"])
+def test_a_file_whose_name_cannot_be_a_folders(stem: str, small: Path, cli: Any) -> None:
+    config = small.with_name(f"{stem}.yaml")
+    config.write_text(small.read_text())
+    result = cli("sweep", "--out", small.parent / "out", "--", config)
+    assert result.exit_code == 2
+    assert "rename" in result.stderr
+    assert not (small.parent / "out").exists()
+
+
+def test_a_grid_whose_names_are_too_long(small: Path, cli: Any) -> None:
+    small.write_text(f"{small.read_text()}grid:\n  sensors.points.noise_m: ['{'1' * 95}']\n")
+    result = cli("validate", small)
+    assert result.exit_code == 2
+    assert "letters" in result.stderr
+
+
+@pytest.mark.parametrize("pair", [("plumless", "buckeroo"), ("codding", "gnu")])
+def test_cases_that_would_draw_the_same_are_refused(
+    pair: tuple[str, str], small: Path, cli: Any
+) -> None:
+    same = zlib.crc32(pair[0].encode()) == zlib.crc32(pair[1].encode())
+    small.write_text(small.read_text() + "".join(f"  {name}: {{}}\n" for name in pair))
+    result = cli("validate", small)
+    assert (result.exit_code == 2) == same
+    assert ("CRC-32" in result.stderr) == same
+
+
+def test_devices_and_endless_files_are_no_scenarios(tmp_path: Path, cli: Any) -> None:
+    link = tmp_path / "zero.yaml"
+    link.symlink_to("/dev/zero")
+    result = cli("validate", link)
+    assert result.exit_code == 2
+    assert "MB" in result.stderr
+
+
+def test_texts_beyond_the_basic_plane_are_texts(small: Path) -> None:
+    import debrisest
+
+    assert debrisest.load(small, title="Tumbling \U0001f6f0 é").common.title == "Tumbling 🛰 é"
+
+
+def test_what_is_told_has_no_control_characters() -> None:
+    (told,) = UserError("--case \x1b[2J\ud800").problems
+    assert told == "--case \\x1b[2J\\ud800"
+
+
+def test_titles_are_one_line(small: Path) -> None:
+    text = small.read_text().replace("title: A small tumbling body", "title: |\n  two\n  lines\n")
+    small.write_text(text)
+    assert load_scenario(small).common.title == "two lines"
