@@ -76,7 +76,7 @@ def import_measured(
     """
     folder, stem = out or file.absolute().parent, file.stem if file.is_file() else file.name
     paths = folder / f"{stem}.h5", folder / f"{stem}.yaml"
-    _require_free(paths, like, force)
+    _require_free(file, like.path if like else None, paths, force)
     data = _read(source_of(measured_keys(file, options), Path()), like)
     text, told = _scenario(paths[0].name, f"Measured: {stem}", data, like)
     head = _head(file, paths[1], like)
@@ -118,9 +118,10 @@ def _head(file: Path, path: Path, like: LoadedScenario | None) -> str:
     return _HEAD.format(source=file.name, estimators=estimators, name=path.name)
 
 
-def _require_free(paths: tuple[Path, Path], like: LoadedScenario | None, force: bool) -> None:
-    if like and like.path.exists() and any(p.exists() and p.samefile(like.path) for p in paths):
-        raise UserError(f"{like.path}: the new scenario would take its place; give another --out")
+def _require_free(file: Path, like: Path | None, paths: tuple[Path, ...], force: bool) -> None:
+    for read in (file, like):
+        if read and read.exists() and any(p.exists() and p.samefile(read) for p in paths):
+            raise UserError(f"{read}: what is written would take its place; give another --out")
     there = [f"{path}: this file is there already" for path in paths if path.exists()]
     if there and not force:
         raise UserError([*there, "nothing was written; --force replaces what is there"])

@@ -32,15 +32,22 @@ def scenario_like(
     is left.
     """
     common = scenario.common
-    written = common.model_dump(mode="json", exclude_unset=True, include={"estimators", "tables"})
+    written = common.model_dump(
+        mode="json", exclude_unset=True, include={"starts", "estimators", "tables"}
+    )
     text: Text = {"title": common.title, "measured": dict(measured), "estimators": {}}
-    told = []
+    reasons: dict[str, list[str]] = {}
+    for name, start in written.get("starts", {}).items():
+        starts = text.get("starts", {}) | {name: start}
+        if not _problems(text | {"starts": starts}, folder, scenario):
+            text["starts"] = starts
     for name, estimator in written["estimators"].items():
         one = _of_any_case(estimator, Clock(data["time_s"]))
         if wrong := _problems(text | {"estimators": {name: one}}, folder, scenario):
-            told.append(f"estimator {name} is left out: {'; '.join(wrong)}")
+            reasons.setdefault("; ".join(wrong), []).append(name)
         else:
             text["estimators"][name] = one
+    told = [f"left out: {', '.join(names)}: {why}" for why, names in reasons.items()]
     if not text["estimators"]:
         raise UserError([*told, f"no estimator of {scenario.path} is left for these data"])
     text["tables"], left_out = _tables(text, written.get("tables", {}), folder, scenario)

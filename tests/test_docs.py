@@ -22,6 +22,7 @@ from debrisest.vocabulary import VOCABULARY, axes_of
 DOCS = Path(__file__).parent.parent / "docs"
 SCENARIO = (DOCS / "scenario.md").read_text(encoding="utf-8")
 FILES = (DOCS / "files.md").read_text(encoding="utf-8")
+MEASURED = (DOCS / "measured.md").read_text(encoding="utf-8")
 SCHEMA = scenario_model(ScenarioFile).model_json_schema()
 MODELS = {"ScenarioFile": SCHEMA} | SCHEMA["$defs"]
 EXAMPLES = re.findall(r"^```yaml\n(.*?)^```", SCENARIO, re.M | re.S)
@@ -157,7 +158,7 @@ def test_examples_are_valid(example: str, tmp_path: Path) -> None:
     assert load_scenario(path).cases
 
 
-@pytest.mark.parametrize("text", [SCENARIO, FILES])
+@pytest.mark.parametrize("text", [SCENARIO, FILES, MEASURED])
 def test_links_between_the_guides_lead_somewhere(text: str) -> None:
     for file, anchor in re.findall(r"\]\(([\w./]*)(?:#([\w-]+))?\)", text):
         target = (DOCS / file).read_text(encoding="utf-8") if file else text

@@ -11,6 +11,8 @@ from debrisest.arrays import Array, BoolArray
 from debrisest.sensors import pinhole
 
 _ITERATIONS = 10
+_SETTLED = 1e-6
+"""Of a point's distance, the last step; lines that do not meet ahead have no least squares."""
 _TOLD = 1e-12
 """Ratio of eigenvalues below which lines of sight are parallel."""
 
@@ -42,11 +44,13 @@ def triangulate(rotation: Array, translation: Array, slopes: Array) -> Triangula
         residual, derivative, _ = _linearized(rotation, translation, shown, seen, point)
         hold = _squares(derivative)
         pull = np.einsum("...cfij,...cfi->...fj", derivative, residual)
-        point = point + np.linalg.solve(_steady(hold), pull[..., None])[..., 0]
+        step = np.linalg.solve(_steady(hold), pull[..., None])[..., 0]
+        point = point + step
+    settled = np.linalg.norm(step, axis=-1) <= _SETTLED * np.linalg.norm(point, axis=-1)
     residual, derivative, ahead = _linearized(rotation, translation, shown, seen, point)
     hold = _squares(derivative)
     spread = np.linalg.eigvalsh(hold)
-    told = enough & ahead & (spread[..., 0] > _TOLD * spread[..., 2])
+    told = enough & ahead & settled & (spread[..., 0] > _TOLD * spread[..., 2])
     cofactor = np.linalg.inv(np.where(told[..., None, None], hold, np.eye(3)))
     return Triangulated(
         np.where(told[..., None], point, np.nan),

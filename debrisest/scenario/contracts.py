@@ -41,7 +41,7 @@ def _lacks(case: Case, path: KeyPath, part: Part, given: set[str]) -> Found:
     if missing:
         givers = ", ".join(_givers(missing))
         where = (
-            f"which the measured data lack; in a simulation it comes from: {givers}"
+            f"which the measured data lack; it comes from: {givers}"
             if case.source
             else f"which no part before it gives; add one of: {givers}"
         )

@@ -40,8 +40,9 @@ class PixelPose(RecoveryPart):
                 "no epoch tells a pose: three points of the known geometry are needed in one image"
             )
         turn = to_inertial(data)
-        variance = slope_variance(data, poses.chi2, poses.dof) / _noise(data) ** 2
-        covariance = variance[:, None, None, None] * poses.covariance[..., :3, :3]
+        assumed = _noise(data)[:, None] ** 2
+        scale = slope_variance(data, assumed * poses.chi2, poses.dof)[:, None] / assumed
+        covariance = scale[..., None, None] * poses.covariance[..., :3, :3]
         status = np.where(seen.all(axis=-1), PoseStatus.EVERY, PoseStatus.SOME)
         return {
             "measured_q_if": quaternion.multiply(quaternion.from_matrix(turn), poses.q),

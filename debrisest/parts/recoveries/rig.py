@@ -28,9 +28,13 @@ def to_inertial(data: Data) -> Array:
 def slope_variance(data: Data, square: Array, dof: Array) -> Array:
     """Return the variance of slopes (run,): the known one, else that of the residuals.
 
-    ``square`` are sums of squared residuals and ``dof`` their degrees of freedom (run, ...).
+    ``square`` are sums of squared residuals and ``dof`` their degrees of freedom (run, ...). Their
+    median counts, which some wrong pixels do not move, over the median of a chi-square (Wilson and
+    Hilferty 1931). NaN where nothing is redundant.
     """
     known = data["pixel_noise"] / data["focal_px"]
-    rest = tuple(range(1, square.ndim))
-    found = np.nansum(square, axis=rest) / np.maximum(np.nansum(dof, axis=rest), 1.0)
+    redundant = np.where(dof > 0.0, dof, np.nan)
+    share = square / (redundant * (1.0 - 2.0 / (9.0 * redundant)) ** 3)
+    found = [np.median(each[np.isfinite(each)]) if np.isfinite(each).any() else np.nan
+             for each in share]  # fmt: skip
     return np.asarray(np.where(np.isnan(known), found, known**2))

@@ -21,8 +21,10 @@ def with_gaps(times: Array) -> Array:
     even = (counts >= 1).all() and (np.abs(steps - counts * grid) <= _OFF * grid).all()
     if not even or counts.sum() + 1 > _MOST * len(times):
         return times
-    number = np.concatenate([[0.0], np.cumsum(counts)])
-    return np.interp(np.arange(number[-1] + 1), number, times)
+    number = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    epochs = np.interp(np.arange(number[-1] + 1), number, times)
+    epochs[number] = times
+    return np.asarray(epochs)
 
 
 def on_epochs(values: Array, times: Array, epochs: Array) -> Array:

@@ -35,6 +35,11 @@ class MeasuredTracks(FromFiles):
     Names of features are those of the geometry. What is not one rigid body is refused.
     """
 
+    gives = (
+        "measured_point", "point_sigma", "point_noise", "known_point_f", "measured_pixel",
+        "pixel_noise", "focal_px", "rig_rotation", "rig_translation", "known_q_ic",
+        "measured_range", "landmark", "landmark_range",
+    )  # fmt: skip
     kind: Literal["tracks"]
     points: str | None = Field(None, description="known geometry: feature,x_m,y_m,z_m, body axes")
     camera: str | list[str] | None = Field(None, description="calibration, in one or more files")
