@@ -18,6 +18,8 @@ from debrisest.filters.estimates import Estimates
 _TO_PLAIN = BASIS[:, [0, 1, 0, 0, 1], [0, 1, 1, 2, 2]].T
 """The coordinates of `points_inertia` (5,) by the orthonormal ones of the batch (5,)."""
 _ALL_FIVE = 5.0
+_FEWEST_POINTS = 2
+"""Of an epoch: a single point tells nothing of a body that moves as it likes."""
 
 
 def estimates(
@@ -101,9 +103,10 @@ def _counted(motion: Motion, measured: Array) -> Data:
     """How many of the measurements (time, m) of each epoch count, and how many do not."""
     used = motion.used.reshape(len(measured), -1)
     seen = np.isfinite(measured.reshape(*used.shape, -1)).all(axis=-1)
+    alone = (used.shape[1] > 1) & (seen.sum(axis=-1, keepdims=True) < _FEWEST_POINTS)
     return {
         "observations_used": used.sum(axis=-1).astype(np.float64),
-        "rejected": (seen & ~used).sum(axis=-1).astype(np.float64),
+        "rejected": (seen & ~used & ~alone).sum(axis=-1).astype(np.float64),
     }
 
 
