@@ -62,8 +62,11 @@ def poses_from_pixels(
     enough = (points >= _FEWEST_POINTS) & (2 * seen.sum(axis=(1, 2)) >= 6)
     weight = np.where(seen[..., None], 1.0 / np.broadcast_to(sigma, pixels.shape) ** 2, 0.0)
     shown = np.where(seen[..., None], pixels, 0.0)
+    shapes = (4,), (3,), (6, 6), (), ()
+    result = Poses(*(np.full((len(pixels), *shape), np.nan) for shape in shapes))
+    if not enough.any():
+        return result
     found = _poses(_Problem(cameras, shown[enough], weight[enough], model))
-    result = Poses(*(np.full((len(pixels), *part.shape[1:]), np.nan) for part in found))
     for whole, part in zip(result, found):
         whole[enough] = part
     return result

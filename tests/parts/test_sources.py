@@ -134,6 +134,21 @@ def test_pixels_of_a_known_body_give_its_poses(
     assert found["status"].tolist() == ["a pose at every epoch"]
 
 
+def test_exchanged_cameras_are_suspected(folder: Path) -> None:
+    data = tracks(folder, file="pixels.csv", camera="stereo.yaml")
+    data["measured_pixel"] = data["measured_pixel"][:, :, ::-1]
+    with pytest.raises(ValueError, match="are the cameras exchanged"):
+        Triangulation(kind="triangulation").recover(data, Clock(data["time_s"]))
+
+
+def test_two_known_points_tell_no_pose(folder: Path) -> None:
+    lines = (folder / "body.csv").read_text().splitlines()
+    (folder / "two.csv").write_text("\n".join(lines[:3]) + "\n")
+    data = tracks(folder, file="one.csv", camera="mono.yaml", points="two.csv")
+    with pytest.raises(ValueError, match="no epoch tells a pose: three points"):
+        PixelPose(kind="pixel_pose").recover(data, Clock(data["time_s"]))
+
+
 def test_pixels_of_two_cameras_give_points(folder: Path) -> None:
     keys = {"camera": "stereo.yaml", "attitude": "attitude.csv", "noise_px": 0.5}
     data = tracks(folder, file="pixels.csv", **keys)

@@ -33,6 +33,11 @@ class Triangulation(RecoveryPart):
             raise ValueError("one camera does not tell how far points are; two or more are needed")
         rigs = zip(data["rig_rotation"], data["rig_translation"], shown)
         found = Triangulated(*map(np.stack, zip(*(triangulate(*rig) for rig in rigs))))
+        if np.isnan(found.point).all():
+            raise ValueError(
+                "no point has a place: no two cameras see one, or their lines of sight do not meet "
+                "ahead; are the cameras exchanged?"
+            )
         turn = to_inertial(data)[:, :, None]
         variance = slope_variance(data, found.chi2, found.dof)[:, None, None, None, None]
         covariance = turn @ (variance * found.cofactor) @ np.swapaxes(turn, -1, -2)
