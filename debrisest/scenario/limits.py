@@ -22,6 +22,7 @@ _LARGEST = {
     "_s": inf,
     "2": inf,
     "_m_s2": 1e6,
+    "_kg_m2": 1e15,
 }
 """By the end of a key, its unit; the longest end that fits.
 
