@@ -10,6 +10,7 @@ import numpy as np
 from debrisest.arrays import Data
 from debrisest.results import store
 from debrisest.runner.plan import Step
+from debrisest.runner.schedule import Schedule
 from debrisest.runner.stages.isolate import isolate
 from debrisest.runner.stages.pipeline import STAGES
 from debrisest.vocabulary import VOCABULARY
@@ -28,25 +29,23 @@ def execute(steps: Sequence[Step], pool: Executor, width: int) -> Iterator[Outco
     A step that cannot write its file takes the steps that need it along; a worker that dies ends
     the whole execution, with an outcome for what was running.
     """
-    waiting = [step for step in steps if step.reason]
-    unfinished = {step.path for step in waiting}
+    schedule = Schedule(step for step in steps if step.reason)
     running: dict[Future[None], Step] = {}
-    while waiting or running:
-        ready = [s for s in waiting if not unfinished & {up.path for up in s.upstream}]
-        for step in ready[: max(width - len(running), 0)]:
-            waiting.remove(step)
+    while True:
+        for step in schedule.take(width - len(running)):
             running[_submit(pool, step)] = step
+        if not running:
+            return
         finished, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in finished:
             step, error = running.pop(future), future.exception()
             if isinstance(error, BrokenExecutor):
-                waiting = []
+                schedule.stop()
                 yield Outcome(step, "a worker process was ended; run again to go on")
             elif error is not None:
-                waiting = [w for w in waiting if step.path not in {up.path for up in w.upstream}]
                 yield Outcome(step, f"{type(error).__name__}: {error}")
             else:
-                unfinished.discard(step.path)
+                schedule.done(step)
                 yield Outcome(step)
 
 

@@ -16,6 +16,7 @@ from debrisest.runner.stages.pipeline import STAGES, stages_of
 from debrisest.scenario.case import Case
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import allowed_names
+from debrisest.scenario.schema import MOST_RUNS
 
 RUNS_PER_FILE = 20
 
@@ -72,6 +73,8 @@ def check_selection(scenarios: Sequence[LoadedScenario], selection: Selection) -
         for name in names or []
         if name not in known
     ]
+    if selection.runs is not None and not 1 <= selection.runs <= MOST_RUNS:
+        problems.append(f"--runs {selection.runs}: from 1 to {MOST_RUNS} are possible")
     if problems:
         raise UserError(problems)
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import yaml
@@ -38,6 +38,11 @@ class Case:
             self.document, context={"folder": self.folder}
         )
         return scenario
+
+    def known_as(self, scenario: Scenario) -> Self:
+        """Return the case, which takes a scenario for the one that its document was found to be."""
+        vars(self)["scenario"] = scenario
+        return self
 
     @cached_property
     def measured(self) -> Data:

@@ -20,6 +20,7 @@ from debrisest.scenario.document import (
     parse,
     sub_document,
 )
+from debrisest.scenario.limits import extreme_numbers
 from debrisest.scenario.measured import told_by_data
 from debrisest.scenario.mistakes import allowed_names, validated
 from debrisest.scenario.names import case_name_problems, check_scenario_name
@@ -62,18 +63,23 @@ def load_scenario(
     if problems and not document.value:
         raise UserError(map(str, problems))
     laid_on = [_override(text, document) for text in overrides]
+    given = [document, *laid_on]
+    extreme = [p for one in given for p in _placed(one, extreme_numbers(one.value))]
+    if extreme:
+        raise UserError(dict.fromkeys(map(str, [*problems, *extreme])))
     own: dict[str, Any] = {k: v for k, v in document.value.items() if k in ("cases", "grid")}
     listed, found = validated(Document(own, document.places), CasesAndGrid, path.parent)
     problems += found
     cases: dict[str, Case] = {}
-    documents = _case_documents(document, listed or CasesAndGrid())
-    problems += _placed(document, _case_name_problems(documents, listed or CasesAndGrid()))
-    for name, case_document in documents.items():
-        complete, wrong = told_by_data(reduce(merge, laid_on, case_document), path.parent)
+    layers_of = _layers_of_cases(document, listed or CasesAndGrid())
+    problems += _placed(document, _case_name_problems(layers_of, listed or CasesAndGrid()))
+    for name, layers in layers_of.items():
+        complete, wrong = told_by_data(reduce(merge, [*layers, *laid_on]), path.parent)
         scenario, found = validated(complete, scenario_model(), path.parent)
         problems += wrong + found
         if scenario is not None and not wrong:
-            cases[name] = Case(path.stem, name, complete.value, path.parent.absolute(), loaded)
+            case = Case(path.stem, name, complete.value, path.parent.absolute(), loaded)
+            cases[name] = case.known_as(scenario)
             problems += _placed(complete, case_problems(cases[name]))
     if not problems:
         problems = _placed(document, file_problems(cases))
@@ -129,25 +135,23 @@ def _placed(document: Document, found: Iterable[tuple[KeyPath, str]]) -> list[Pr
     ]
 
 
-def _case_documents(document: Document, listed: CasesAndGrid) -> dict[str, Document]:
-    """Return the complete document of every case, grid and cases multiplied out."""
+def _layers_of_cases(document: Document, listed: CasesAndGrid) -> dict[str, list[Document]]:
+    """Return what is laid on each other for every case, grid and cases multiplied out."""
     base = Document(
         {key: value for key, value in document.value.items() if key not in ("cases", "grid")},
         document.places,
     )
-    cases = {name: merge(base, sub_document(document, ("cases", name))) for name in listed.cases}
+    cases = {name: [base, sub_document(document, ("cases", name))] for name in listed.cases}
     if not listed.grid:
-        return cases or {NOMINAL: base}
+        return cases or {NOMINAL: [base]}
     points = [_grid_point(document, point) for point in _combinations(listed.grid)]
     names = [name for name, _ in points]
     if len(set(names)) < len(names):
         raise UserError(f"{document.place(('grid',))}: two points of the grid have one name")
     if not cases:
-        return {name: merge(base, over) for name, over in points}
+        return {name: [base, over] for name, over in points}
     return {
-        f"{case},{name}": merge(whole, over)
-        for case, whole in cases.items()
-        for name, over in points
+        f"{case},{name}": [*layers, over] for case, layers in cases.items() for name, over in points
     }
 
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from functools import reduce
+from functools import cache, reduce
 from operator import or_
 from typing import Annotated, Any, Literal
 
@@ -14,6 +14,7 @@ from debrisest.clock import Clock
 from debrisest.roles import (
     FilterPart,
     Keys,
+    Part,
     Positive,
     ProblemPart,
     RecoveryPart,
@@ -140,6 +141,7 @@ class Estimator(Keys):
         return self
 
 
+MOST_RUNS = 1_000_000
 TOLD_BY_DATA = ("seed", "runs", "duration_s")
 """Keys of a simulation that measured data tell."""
 SIMULATED = (*TOLD_BY_DATA, "step_s", "target", "orbit", "motion", "observers", "sensors")
@@ -152,7 +154,7 @@ class Scenario(Keys):
     title: Line
     source: Line = ""
     seed: Annotated[int, Field(ge=0, lt=2**63)]
-    runs: Annotated[int, Field(ge=1)]
+    runs: Annotated[int, Field(ge=1, le=MOST_RUNS)]
     duration_s: Positive
     step_s: Positive | None = None
     measured: SourcePart | None = None
@@ -215,6 +217,21 @@ class ScenarioFile(Scenario, CasesAndGrid):
 
 def scenario_model(base: type[Scenario] = Scenario) -> Any:
     """Return the scenario's model with the catalog's kinds in their places."""
+    return _scenario_model(base, _catalog())
+
+
+def measured_model() -> Any:
+    """Return the model of `measured` alone, with the catalog's kinds."""
+    return _measured_model(_catalog())
+
+
+def _catalog() -> tuple[tuple[type[Part], ...], ...]:
+    """Return what the models are made of: they are made anew where a plug-in changes it."""
+    return tuple(map(tuple, CATALOG.values()))
+
+
+@cache
+def _scenario_model(base: type[Scenario], _: Any) -> Any:
     create: Any = create_model
     roles = ("recovery", "problem", "start", "filter")
     optional = {role: (_kinds(role) | None, None) for role in roles}
@@ -233,8 +250,8 @@ def scenario_model(base: type[Scenario] = Scenario) -> Any:
     )
 
 
-def measured_model() -> Any:
-    """Return the model of `measured` alone, with the catalog's kinds."""
+@cache
+def _measured_model(_: Any) -> Any:
     create: Any = create_model
     return create("Measured", __base__=Measured, measured=(_kinds("measured"), ...))
 

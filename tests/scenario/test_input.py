@@ -323,7 +323,7 @@ BAD_CSV = {
     "case": (CSV + "1,slwo,pitch,rmse,0-60 s,1,2,,\n", [":2: ", "no case", "mean slow?"]),
     "quantity": (CSV + "2,slow,pich,rmse,end,1,2,,\n", [":2: ", "no quantity", "mean pitch?"]),
     "statistic": (CSV + "2,slow,pitch,rsme,end,1,2,,\n", [":2: ", "no statistic", "mean rmse?"]),
-    "window": (CSV + "1,slow,pitch,rmse,end,1,2,,\n", [":2: ", "'end' in table 1", "0-60 s"]),
+    "window": (CSV + "1,slow,pitch,rmse,0-60s,1,2,,\n", [":2: ", "a window", "'0-60s'"]),
     "verdict": (CSV + "1,slow,pitch,rmse,0-60 s,1,2,beter,\n", [":2: ", "mean better?"]),
 }
 

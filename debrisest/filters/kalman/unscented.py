@@ -49,7 +49,7 @@ def unscented(
     measurements: Array,
     spread: UnscentedParameters = _SPREAD,
     keep: Sequence[int] = (),
-    redraw: bool = False,
+    redraw: bool = True,
 ) -> Estimates:
     """Filter a batch of runs (Biondi et al. 2017, Eqs 32-42).
 
@@ -60,9 +60,9 @@ def unscented(
     * Eq 32: the factor of sqrt(P) is sqrt(alpha^2 (n_e + kappa)).
     * Eqs 34-35: mean and covariance are those of the predicted points, the covariance about
       the mean.
-    * Eq 36: the predicted points are measured as they are, as printed, so S and C lack Q;
-      with `redraw` new ones are drawn from the predicted covariance, Q included, and on a
-      linear model the filter is the Kalman filter whatever Q.
+    * Eq 36: new points are drawn from the predicted covariance, Q included, so that on a linear
+      model the filter is the Kalman filter whatever Q. Without `redraw` the predicted points are
+      measured as they are, as printed, and S and C lack Q.
     * Eq 42: P- - K S K^T is evaluated as (dX - K dY) W (dX - K dY)^T + K R K^T + Q, equal but
       symmetric, and positive when the weights are.
 

@@ -94,7 +94,8 @@ def normal_equations(
 ) -> tuple[Array, Array, Array]:
     """``H^T W H``, ``H^T W r`` and ``r^T W r`` per run, of rows ``(run, ..., m, n_e)``."""
     runs, n_e = len(derivative), derivative.shape[-1]
-    flat = (weight[..., None] * derivative).reshape(runs, -1, n_e)
-    weighted = (weight * residual).reshape(runs, -1, 1)
+    rows = int(np.prod(derivative.shape[1:-1]))
+    flat = (weight[..., None] * derivative).reshape(runs, rows, n_e)
+    weighted = (weight * residual).reshape(runs, rows, 1)
     transposed = np.swapaxes(flat, -1, -2)
     return transposed @ flat, (transposed @ weighted)[..., 0], (weighted**2).sum((-2, -1))

@@ -24,14 +24,14 @@ def kept_epochs(times: list[float], clock: Clock) -> list[int]:
 
 
 class Unscented(FilterPart):
-    """The unscented Kalman filter; the paper's form does not redraw its sigma points."""
+    """The unscented Kalman filter; on a linear model the Kalman filter, unless not redrawn."""
 
     takes = "model"
     kind: Literal["unscented"]
     alpha: Positive = 1.0
     beta: float = 2.0
     kappa: float = 0.0
-    redraw: bool = False
+    redraw: bool = True
     keep_s: KeptTimes = []
 
     def run(self, model: Model, given: Given) -> Estimates:

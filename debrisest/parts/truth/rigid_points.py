@@ -12,6 +12,9 @@ from debrisest.draws import Draws
 from debrisest.parts.truth.each_run import each_run
 from debrisest.roles import Keys, SimulationPart, Vector3
 
+MOST_UNEQUAL = 1e6
+"""A rod a kilometre long and a metre thick."""
+
 
 def _possible_inertia(rows: list[float] | list[list[float]]) -> list[float] | list[list[float]]:
     tensor = inertia_tensor(rows)
@@ -20,6 +23,11 @@ def _possible_inertia(rows: list[float] | list[list[float]]) -> list[float] | li
     moments = [float(moment) for moment in np.linalg.eigvalsh(tensor)]
     if moments[0] <= 0:
         raise ValueError(f"the principal moments must be positive, they are {_text(moments)}")
+    if moments[2] > MOST_UNEQUAL * moments[0]:
+        raise ValueError(
+            f"the largest principal moment must be at most {MOST_UNEQUAL:g} times the smallest, "
+            f"they are {_text(moments)}"
+        )
     if moments[2] > (moments[0] + moments[1]) * (1 + 1e-9):
         raise ValueError(
             "no body has this inertia: the largest principal moment must not exceed the sum of "

@@ -10,16 +10,16 @@ from math import isfinite
 from pathlib import Path
 from typing import NamedTuple
 
+from debrisest.assessment.statistics import STATISTICS
 from debrisest.errors import UserError
 from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import allowed_names
-from debrisest.scenario.schema import Table
+from debrisest.scenario.schema import window_of
 from debrisest.show.tables.verdict import Verdict
+from debrisest.vocabulary import VOCABULARY
 
 _COLUMNS = ("table", "case", "quantity", "statistic", "window", "published", "factor")
-
-_LISTS = {"quantity": "quantities", "statistic": "statistics", "window": "windows"}
 
 
 class CellKey(NamedTuple):
@@ -144,22 +144,24 @@ def _verdict(word: str) -> Verdict:
 
 
 def _unknown_cell(key: CellKey, scenario: LoadedScenario) -> str:
-    """Return the field by which a cell is none of the scenario's tables; nothing if it is one."""
+    """Return the field of a cell that no table of the scenario can have; nothing if there is none.
+
+    What a table could show and does not is no mistake: a scenario may leave it out.
+    """
     tables = scenario.common.tables
-    every = [*scenario.cases, *tables.means]
-    fitting = list(tables.layout)
-    for field, given in key._asdict().items():
-        has = [_values(field, table, every) for table in fitting]
-        fitting = [table for table, values in zip(fitting, has) if given in values]
-        if not fitting:
-            allowed = dict.fromkeys(value for values in has for value in values)
-            here = "" if field == "table" else f" in table {key.table}"
-            return f"no {field} {given!r}{here}; {allowed_names(given, allowed)}"
+    layout = [table for table in tables.layout if table.table == key.table]
+    known = {
+        "table": [table.table for table in tables.layout],
+        "case": [*scenario.cases, *tables.means],
+        "quantity": [name for table in layout for name in table.quantities],
+        "statistic": list(STATISTICS),
+    }
+    possible = known | {"quantity": [name for name, q in VOCABULARY.items() if q.table_unit]}
+    for field, names in known.items():
+        if (given := getattr(key, field)) not in possible[field]:
+            return f"no {field} {given!r}; {allowed_names(given, dict.fromkeys(names))}"
+    try:
+        window_of(key.window, scenario.common.duration_s)
+    except ValueError as error:
+        return str(error)
     return ""
-
-
-def _values(field: str, table: Table, cases: list[str]) -> list[str]:
-    """Return what a field of a cell can be in a table of the layout."""
-    if field == "table":
-        return [table.table]
-    return (table.cases or cases) if field == "case" else list(getattr(table, _LISTS[field]))
