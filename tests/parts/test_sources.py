@@ -110,7 +110,7 @@ def test_poses_are_turned_to_inertial_axes(folder: Path) -> None:
     assert off(data["measured_q_if"][0], body) < 1e-9
     expected = chaser.apply([0.3, -0.2, 9.0])
     np.testing.assert_allclose(data["measured_position"][0], expected, atol=1e-9)
-    np.testing.assert_allclose(data["measured_q_if_sigma"], np.radians(2.0))
+    np.testing.assert_allclose(data["q_if_noise"], np.radians(2.0))
 
 
 @pytest.mark.parametrize("attitude", [None, "attitude.csv"])

@@ -18,7 +18,7 @@ from debrisest.tracks.types import Tracks
 class MeasuredPoses(FromFiles):
     """Attitudes of the body's own axes with their noise, and positions if the file has them."""
 
-    gives = ("measured_q_if", "measured_q_if_sigma", "measured_position")
+    gives = ("measured_q_if", "q_if_noise", "measured_position")
     kind: Literal["poses"]
     sigma_deg: Positive | None = Field(None, description="of each axis, where the file has none")
 
