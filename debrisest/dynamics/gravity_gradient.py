@@ -6,6 +6,7 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
+from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics.kepler import MU_EARTH
 
 
@@ -32,9 +33,9 @@ def tumble(
         q, rate = state[:4], state[4:]
         r_i = position(time)
         r_b = quaternion.to_matrix(quaternion.normalize(q)).T @ r_i
-        gravity = 3.0 * mu / np.linalg.norm(r_i) ** 5 * _skew(r_b) @ inertia @ r_b
+        gravity = 3.0 * mu / np.linalg.norm(r_i) ** 5 * matrix_of_cross(r_b) @ inertia @ r_b
         spin = 0.5 * quaternion.multiply(q, np.concatenate([[0.0], rate]))
-        return np.concatenate([spin, inverse @ (gravity - _skew(rate) @ inertia @ rate)])
+        return np.concatenate([spin, inverse @ (gravity - matrix_of_cross(rate) @ inertia @ rate)])
 
     span = (0.0, max(float(times[-1]), 1.0))
     start = np.concatenate([q0, rate0])
@@ -42,9 +43,3 @@ def tumble(
         derivative, span, start, method="DOP853", t_eval=times, rtol=1e-11, atol=1e-13
     )
     return quaternion.normalize(solution.y[:4].T), solution.y[4:].T
-
-
-def _skew(v: Array) -> Array:
-    """Matrix of the vector product, ``_skew(v) @ w = v x w``."""
-    x, y, z = v
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

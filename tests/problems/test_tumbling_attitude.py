@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from debrisest.assessment.principal_axes import RELABELINGS
 from debrisest.clock import Clock
+from debrisest.dynamics import integrators
 from debrisest.parts.filters.kalman import Unscented
 from debrisest.problems.tumbling import attitude as problem
 from debrisest.roles import Given
@@ -24,11 +25,11 @@ BODIES = {
 
 
 def rk4(state: np.ndarray, step: float) -> np.ndarray:
-    return problem.process(np.array([state, state]), step, problem.rk4_step)[0]
+    return problem.process(np.array([state, state]), step, integrators.rk4_step)[0]
 
 
 def euler(state: np.ndarray, step: float) -> np.ndarray:
-    return problem.process(np.array([state, state]), step, problem.euler_step)[0]
+    return problem.process(np.array([state, state]), step, integrators.euler_step)[0]
 
 
 def change(state: np.ndarray) -> np.ndarray:
@@ -140,7 +141,7 @@ def test_relabeled_axes_move_alike(index: int, moments: np.ndarray, rate: np.nda
 def test_leading_axes_are_a_batch() -> None:
     states = np.stack([state_of(*body) for body in BODIES.values()]).reshape(2, 2, 14)
     each = np.array([[rk4(state, 0.5) for state in row] for row in states])
-    assert problem.process(states, 0.5, problem.rk4_step) == pytest.approx(each, abs=1e-15)
+    assert problem.process(states, 0.5, integrators.rk4_step) == pytest.approx(each, abs=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -153,7 +154,7 @@ def test_leading_axes_are_a_batch() -> None:
 def test_a_step_leaves_its_argument_alone(shape: tuple[int, ...]) -> None:
     states = np.broadcast_to(state_of(*BODIES["slender"]), shape).copy()
     before = states.copy()
-    problem.process(states, 0.5, problem.rk4_step)
+    problem.process(states, 0.5, integrators.rk4_step)
     assert np.array_equal(states, before)
 
 

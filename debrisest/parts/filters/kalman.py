@@ -1,4 +1,4 @@
-"""Filters that a scenario can name."""
+"""Kalman filters of labelled measurements: unscented, extended, iterated."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""Sensors: what is measured of the target."""
+"""A sensor of points: the coordinates of the features that are seen."""
 
 from typing import Literal
 

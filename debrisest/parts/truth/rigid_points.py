@@ -1,4 +1,4 @@
-"""Targets: the features on a body and its inertia."""
+"""A target that is known: the features on a body and its inertia."""
 
 from typing import Annotated, Literal
 

@@ -4,13 +4,12 @@ The state (14) is ``q_ib`` (principal axes to inertial), ``q_bf`` (feature frame
 axes, constant), the rate in principal axes and the principal moments, scaled to unit norm. What is
 measured is ``q_if = q_ib q_bf``, up to its sign. The source is Biondi et al. (2017), Eqs 29-31.
 
-We depart from the printed Eq 29 in the sign of Euler's term (``-J^-1 (w x J w)``; with the printed
-sign the filter finds the same rates and a wrong inertia) and in the size of its zero block for
-``q_bf`` (4, not 3). The body's axes ``b`` of a filter are principal axes known only up to a
-relabeling, see `debrisest.assessment.principal_axes`.
+We depart from the printed Eq 29 in the sign of Euler's term (see `debrisest.dynamics.integrators`;
+with the printed sign the filter finds the same rates and a wrong inertia) and in the size of its
+zero block for ``q_bf`` (4, not 3). The body's axes ``b`` of a filter are principal axes known only
+up to a relabeling, see `debrisest.assessment.principal_axes`.
 """
 
-from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
@@ -18,6 +17,7 @@ import numpy as np
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
+from debrisest.dynamics.integrators import Integrator, euler_step, rk4_step
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.model import Model
 from debrisest.problems.tumbling.score import scores
@@ -31,45 +31,6 @@ ERROR_NAMES = tuple(
 )
 LEAST_MOMENT = 0.02
 """Sigma points of the moments, which have unit norm, are kept this far from zero."""
-
-
-def derivative(q: Array, rate: Array, ratio: Array) -> tuple[Array, Array]:
-    """Return the time derivatives of ``q_ib`` (4, ...) and of the rate (3, ...), per second.
-
-    Components come first. ``ratio`` (3, ...) is ``(J2 - J3) / J1`` and its cyclic companions, all
-    that the motion shows of the moments (Eqs 29 and 31, corrected).
-    """
-    q0, q1, q2, q3 = q
-    w1, w2, w3 = rate
-    q_dot, acceleration = np.empty_like(q), np.empty_like(rate)
-    q_dot[0] = -(q1 * w1 + q2 * w2 + q3 * w3)
-    q_dot[1] = q0 * w1 + q2 * w3 - q3 * w2
-    q_dot[2] = q0 * w2 + q3 * w1 - q1 * w3
-    q_dot[3] = q0 * w3 + q1 * w2 - q2 * w1
-    acceleration[0], acceleration[1], acceleration[2] = w2 * w3, w3 * w1, w1 * w2
-    q_dot *= 0.5
-    acceleration *= ratio
-    return q_dot, acceleration
-
-
-def euler_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array, Array]:
-    """Return ``q`` and rate after one explicit Euler step of ``step`` seconds, as printed."""
-    q_dot, acceleration = derivative(q, rate, ratio)
-    return q + step * q_dot, rate + step * acceleration
-
-
-def rk4_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array, Array]:
-    """Return ``q`` and rate after one classical Runge-Kutta step of ``step`` seconds."""
-    half = 0.5 * step
-    q1, w1 = derivative(q, rate, ratio)
-    q2, w2 = derivative(q + half * q1, rate + half * w1, ratio)
-    q3, w3 = derivative(q + half * q2, rate + half * w2, ratio)
-    q4, w4 = derivative(q + step * q3, rate + step * w3, ratio)
-    sixth = step / 6
-    return q + sixth * (q1 + 2 * (q2 + q3) + q4), rate + sixth * (w1 + 2 * (w2 + w3) + w4)
-
-
-Integrator = Callable[[Array, Array, Array, float], tuple[Array, Array]]
 
 
 def process(state: Array, step: float, integrator: Integrator) -> Array:

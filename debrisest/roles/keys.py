@@ -1,0 +1,42 @@
+"""What keys of a scenario can hold: vectors, positive numbers, unit quaternions, limits."""
+
+from typing import Annotated, TypeVar
+
+import numpy as np
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+Window = tuple[float, float]
+"""From the first time (included) to the second (excluded), in seconds."""
+
+Vector3 = Annotated[list[float], Field(min_length=3, max_length=3)]
+Positive = Annotated[float, Field(gt=0)]
+NonNegative = Annotated[float, Field(ge=0)]
+
+
+def _unit_quaternion(q: list[float]) -> list[float]:
+    norm = float(np.linalg.norm(q))
+    if not abs(norm - 1) < 1e-3:
+        raise ValueError(f"a unit quaternion (scalar first) is needed; its norm is {norm:.4g}")
+    return [component / norm for component in q]
+
+
+UnitQuaternion = Annotated[
+    list[float], Field(min_length=4, max_length=4), AfterValidator(_unit_quaternion)
+]
+
+
+def _ascending(limits: list[float]) -> list[float]:
+    if limits[0] > limits[1]:
+        raise ValueError("the lower limit comes first")
+    return limits
+
+
+_Number = TypeVar("_Number")
+Limits = Annotated[list[_Number], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
+"""Lower and upper limit, such as ``Limits[Positive]``."""
+
+
+class Keys(BaseModel):
+    """A mapping of a scenario: unknown keys, infinities and texts for numbers are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)

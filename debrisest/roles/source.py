@@ -1,0 +1,60 @@
+"""Where data come from: parts that simulate them, and parts that read them from files."""
+
+from abc import abstractmethod
+from pathlib import Path
+from typing import ClassVar
+
+from debrisest.arrays import Data
+from debrisest.clock import Clock
+from debrisest.draws import Draws
+from debrisest.roles.part import Part
+
+
+class SimulationPart(Part):
+    """Target, orbit, motion, observer, sensor or start: adds its datasets to what is there.
+
+    Only a simulation has a truth: nothing after the source may need it.
+    """
+
+    role = "sensors"
+
+    truths: ClassVar[tuple[str, ...]] = ()
+    """Datasets of what really happens."""
+    knows: ClassVar[tuple[str, ...]] = ()
+    """Datasets of what estimators are told: noise, geometry of cameras, known points."""
+    measures: ClassVar[tuple[str, ...]] = ()
+    """Datasets of what sensors read."""
+    frames: ClassVar[dict[str, str]] = {}
+    """The axes and origin of datasets whose name does not tell them."""
+    tried: ClassVar[bool] = False
+    """Whether the first two epochs are simulated when a scenario is read, for it to be refused."""
+
+    @classmethod
+    def can_give(cls) -> tuple[str, ...]:
+        """Return the datasets that parts of this kind give, of all three groups."""
+        return (*cls.truths, *cls.knows, *cls.measures)
+
+    @abstractmethod
+    def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return the new datasets; ``data`` holds those of the parts before this one."""
+
+    def simulate_named(self, name: str, data: Data, clock: Clock, draws: Draws) -> Data:
+        """Return the same, for a part whose datasets tell the name that the scenario gave it."""
+        return self.simulate(data, clock, draws)
+
+
+class SourcePart(Part):
+    """Measured data from files, in the place of a simulation."""
+
+    role = "measured"
+
+    @abstractmethod
+    def read(self, folder: Path) -> Data:
+        """Return what is known and measured, of all runs, with ``run`` and ``time_s``.
+
+        Paths count from ``folder``, the scenario's. UserError tells what is wrong with a file.
+        """
+
+    @abstractmethod
+    def digest(self, folder: Path) -> str:
+        """Return a checksum of what the files hold, by which a change is noticed."""
