@@ -1,8 +1,9 @@
 """Run the steps of a plan on any ``concurrent.futures.Executor``, resuming from files."""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures.process import BrokenProcessPool
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,11 +24,17 @@ class Outcome(NamedTuple):
     error: str = ""
 
 
-def execute(steps: Sequence[Step], pool: Executor, width: int) -> Iterator[Outcome]:
+def execute(
+    steps: Sequence[Step],
+    pool: Executor,
+    width: int,
+    lacking: Callable[[Step], str] = lambda _: "",
+) -> Iterator[Outcome]:
     """Run the steps that have a reason to, each after its upstream, at most ``width`` at a time.
 
     A step that cannot write its file takes the steps that need it along; a worker that dies ends
-    the whole execution, with an outcome for what was running.
+    the whole execution, with an outcome for what was running. ``lacking`` says why a step that a
+    worker reports to be done is not.
     """
     schedule = Schedule(step for step in steps if step.reason)
     running: dict[Future[None], Step] = {}
@@ -41,12 +48,21 @@ def execute(steps: Sequence[Step], pool: Executor, width: int) -> Iterator[Outco
             step, error = running.pop(future), future.exception()
             if isinstance(error, BrokenExecutor):
                 schedule.stop()
-                yield Outcome(step, "a worker process was ended; run again to go on")
+                yield Outcome(step, _said(error))
             elif error is not None:
                 yield Outcome(step, f"{type(error).__name__}: {error}")
+            elif why := lacking(step):
+                yield Outcome(step, why)
             else:
                 schedule.done(step)
                 yield Outcome(step)
+
+
+def _said(error: BrokenExecutor) -> str:
+    """Return why nothing more can be computed; a pool of processes only tells that one ended."""
+    if isinstance(error, BrokenProcessPool):
+        return "a worker process was ended; run again to go on"
+    return str(error)
 
 
 def _submit(pool: Executor, step: Step) -> Future[None]:

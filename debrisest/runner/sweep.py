@@ -12,6 +12,7 @@ from debrisest.runner.execute import execute
 from debrisest.runner.executors import executor
 from debrisest.runner.plan import Selection, Step, plan
 from debrisest.runner.progress import Progress, progress
+from debrisest.runner.read_back import not_read_back
 from debrisest.scenario.load import LoadedScenario
 
 
@@ -28,6 +29,7 @@ def bring_up_to_date(
     scenarios: Sequence[LoadedScenario], out: Path, selection: Selection, machine: Machine
 ) -> dict[str, str]:
     """Run every step that has a reason to; return the runs that gave no result, with reasons."""
+    out = out.absolute() if machine.cluster else out
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -55,7 +57,8 @@ def _run(
     """Run what is due; return the steps that wrote no file, with reasons."""
     errors: dict[str, str] = {}
     with executor(machine.jobs, machine.cluster) as (pool, width):
-        for outcome in execute(steps, pool, width):
+        lacking = (not_read_back,) if machine.cluster else ()
+        for outcome in execute(steps, pool, width, *lacking):
             check()
             told.done(outcome.step.name)
             if outcome.error:
