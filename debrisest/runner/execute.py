@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from debrisest.arrays import Data
+from debrisest.errors import UserError
 from debrisest.results import store
 from debrisest.runner.plan import Step
 from debrisest.runner.stages.isolate import isolate
@@ -107,7 +108,7 @@ def execute(steps: Sequence[Step], pool: Executor, width: int) -> Iterator[Outco
                 yield Outcome(step, "a worker process was ended; run again to go on")
             elif error is not None:
                 waiting = [w for w in waiting if step.path not in {up.path for up in w.upstream}]
-                yield Outcome(step, f"{type(error).__name__}: {error}")
+                yield Outcome(step, _sentence(error))
             else:
                 unfinished.discard(step.path)
                 yield Outcome(step)
@@ -121,6 +122,12 @@ def _submit(pool: Executor, step: Step) -> Future[None]:
         broken: Future[None] = Future()
         broken.set_exception(error)
         return broken
+
+
+def _sentence(error: BaseException) -> str:
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror}; the same command goes on from here"
+    return str(error) if isinstance(error, UserError) else f"{type(error).__name__}: {error}"
 
 
 def run_step(step: Step) -> None:
@@ -146,7 +153,8 @@ def _read(step: Step) -> Data:
         return {"run": step.address.first_run + np.arange(step.runs, dtype=float)}
     data: Data = {}
     for upstream in step.upstream:
-        found = store.read(upstream.path, step.runs)
+        expected = upstream.attributes | {"runs": step.runs}
+        found = store.read(upstream.path, step.runs, expected=expected)
         if "status" in found:
             found[f"{upstream.address.stage}_status"] = found.pop("status")
         data |= found
@@ -154,13 +162,8 @@ def _read(step: Step) -> Data:
 
 
 def _attributes(step: Step) -> dict[str, Any]:
-    return {
-        "stage": step.address.stage,
-        "estimator": step.address.estimator,
-        "case": step.address.case,
-        "first_run": step.address.first_run,
+    return step.attributes | {
         "runs": step.runs,
-        "stage_key": step.key,
         "inputs": json.dumps(step.inputs),
         "scenario": step.case.as_yaml(),
         "plugins": json.dumps({plugin.path: plugin.digest for plugin in step.case.plugins}),
