@@ -1,9 +1,11 @@
 """Files that are there and whole, or not at all."""
 
+import fcntl
 import os
+import secrets
 import socket
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -11,36 +13,61 @@ from pathlib import Path
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary path to write to, which takes the place of ``path`` in one step.
 
-    Where writing fails, ``path`` stays as it was. The file and its folder are synchronised.
+    Where writing fails, ``path`` stays as it was, and OSError names it. The file and its folder are
+    synchronised. The temporary file is locked for as long as its writer is alive.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.tmp")
     try:
-        yield temporary
-        _synchronise(temporary)
-        os.replace(temporary, path)
-        _synchronise(path.parent)
-    finally:
-        temporary.unlink(missing_ok=True)
+        with _temporary(path.parent) as temporary:
+            yield temporary
+            _synchronise(temporary)
+            os.replace(temporary, path)
+            _synchronise(path.parent)
+    except OSError as error:
+        if error.errno is None or not str(error.filename or ".tmp").endswith(".tmp"):
+            raise
+        raise OSError(error.errno, os.strerror(error.errno), str(path)) from None
 
 
 def remove_leftovers(folder: Path) -> None:
-    """Remove temporary files of processes of this machine that no longer run."""
+    """Remove temporary files of this machine whose writers are no longer alive."""
     for path in folder.rglob(".*.tmp"):
-        host, _, process = path.name.removesuffix(".tmp").rpartition(".")
-        if host.endswith(f".{socket.gethostname()}") and not _runs(process):
-            path.unlink(missing_ok=True)
+        if path.name.removesuffix(".tmp").split(".", 2)[2:] == [socket.gethostname()]:
+            with suppress(OSError):
+                _remove_unlocked(path)
 
 
-def _runs(process: str) -> bool:
-    """Return whether a process is there and not a zombie; where that is unknown, it may be."""
-    if not Path("/proc/self/stat").exists():
-        return True
+@contextmanager
+def _temporary(folder: Path) -> Iterator[Path]:
+    """Yield a new file that is locked, and removed if it is still there in the end."""
+    path, descriptor = _locked_file(folder)
     try:
-        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
-    except (OSError, IndexError):
-        return False
-    return state not in "ZX"
+        yield path
+    finally:
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
+        os.close(descriptor)
+
+
+def _locked_file(folder: Path) -> tuple[Path, int]:
+    while True:
+        path = folder / f".{secrets.token_hex(6)}.{socket.gethostname()}.tmp"
+        descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
+        with suppress(OSError):  # of a file system without locks
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        if os.fstat(descriptor).st_nlink:  # else it was taken for a leftover before it was locked
+            return path, descriptor
+        os.close(descriptor)
+
+
+def _remove_unlocked(path: Path) -> None:
+    """Remove a file, or raise OSError where a process holds it or locks cannot tell."""
+    descriptor = os.open(path, os.O_WRONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        path.unlink(missing_ok=True)
+    finally:
+        os.close(descriptor)
 
 
 def _synchronise(path: Path) -> None:

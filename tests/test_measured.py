@@ -4,7 +4,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 import pytest
 import yaml
@@ -205,8 +204,9 @@ def test_a_changed_file_is_computed_again(tumbling: Path, sweep: Callable) -> No
     assert sweep(tumbling / "measured.yaml", tumbling).exit_code == 0
     again = sweep(tumbling / "measured.yaml", tumbling, "--dry-run")
     assert "nothing" in again.output or "simulate" not in again.output
-    with h5py.File(tumbling / "tracks.h5", "a") as file:
-        file["measured_point"][0, 0, 0, 0] = 1e-3
+    data = store.read(tumbling / "tracks.h5")
+    data["measured_point"][0, 0, 0, 0] = 1e-3
+    write_measured(tumbling / "tracks.h5", data)
     after = sweep(tumbling / "measured.yaml", tumbling, "--dry-run")
     assert "measured.digest was" in after.output
 

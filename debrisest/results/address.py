@@ -2,7 +2,7 @@
 
 import re
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 STAGES = ("simulate", "recover", "filter", "assess")
 _NAME = re.compile(rf"({'|'.join(STAGES)})(?:-(.+))?\.(\d{{6,}})\.h5")
@@ -31,6 +31,13 @@ class Address(NamedTuple):
         """Return the file's path below the folder of all results."""
         name = f"{self.stage}-{self.estimator}" if self.estimator else self.stage
         return out / self.scenario / self.case / f"{name}.{self.first_run:06d}.h5"
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Return what the file's own attributes say of where it belongs, whatever its folder."""
+        wanted = self._asdict()
+        del wanted["scenario"]
+        return wanted
 
     @property
     def name(self) -> str:

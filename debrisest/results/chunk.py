@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from debrisest.arrays import Data
-from debrisest.errors import UserError
 from debrisest.results import store
 from debrisest.results.address import Address
 from debrisest.vocabulary import VOCABULARY
@@ -23,10 +22,13 @@ class Chunk(NamedTuple):
     def read(
         self, names: Container[str] = VOCABULARY, first: int = 0, runs: int | None = None
     ) -> Data:
-        """Return datasets of its runs ``first`` up to ``runs``; raise UserError if damaged."""
+        """Return datasets of its runs ``first`` up to ``runs``.
+
+        Raises UserError if it is damaged, or was replaced by another since it was found.
+        """
         last = self.runs if runs is None else min(runs, self.runs)
-        try:
-            return store.read(self.path, last, names, first)
-        except (OSError, RuntimeError, KeyError):
-            damaged = store.Condition.DAMAGED.value
-            raise UserError(f"{self.path} is {damaged}; a sweep computes it again") from None
+        expected = self.address.attributes | {
+            "stage_key": self.attributes.get("stage_key"),
+            "runs": self.runs,
+        }
+        return store.read(self.path, last, names, first, expected)

@@ -28,12 +28,22 @@ def find_results(folder: Path) -> Results:
     """Return what there is of a scenario's results in a folder, which may be nothing."""
     chunks: list[Chunk] = []
     left_out: list[str] = []
-    for path in sorted(folder.glob("*/*.h5")):
+    for path in _files(folder):
         found, address = store.inspect(path, numbers=False), Address.of(path)
         if found.condition is not store.Condition.WHOLE:
             left_out.append(f"{path} is {found.condition.value}")
         elif address is None:
             left_out.append(f"{path} is not named like a file of results")
+        elif not store.fits(found.attributes, address.attributes):
+            left_out.append(f"{path} is {store.Condition.ANOTHER.value}")
         else:
-            chunks.append(Chunk(address, path, int(found.attributes["runs"]), found.attributes))
+            chunks.append(
+                Chunk(address, path, int(found.attributes.get("runs", 0)), found.attributes)
+            )
     return Results(folder, tuple(sorted(chunks, key=lambda one: one.address.order)), left_out)
+
+
+def _files(folder: Path) -> list[Path]:
+    """Return the files of all cases; raise OSError for a folder that cannot be read."""
+    cases = [path for path in sorted(folder.iterdir()) if path.is_dir()] if folder.is_dir() else []
+    return sorted(path for case in cases for path in case.iterdir() if path.suffix == ".h5")

@@ -9,7 +9,7 @@ from typing import Any
 from debrisest.errors import UserError
 from debrisest.results.address import Address
 from debrisest.results.results import Results
-from debrisest.results.store import Checkpoint, Condition
+from debrisest.results.store import Checkpoint, Condition, fits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +25,11 @@ class Wanted:
     """Why it has to be computed; empty where the file is up to date."""
     notice: str = ""
     """What the user should know about the file that is replaced."""
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Return what the attributes of a file that serves say, but for the number of runs."""
+        return self.address.attributes | {"stage_key": self.key}
 
     @property
     def name(self) -> str:
@@ -46,6 +51,8 @@ def out_of_date(wanted: Wanted, found: Checkpoint, otherwise: str = "") -> tuple
         )
     if condition is Condition.MISSING:
         return "not there yet", ""
+    if condition is Condition.WHOLE and not fits(found.attributes, wanted.address.attributes):
+        condition = Condition.ANOTHER
     if condition is not Condition.WHOLE:
         told = f"{wanted.path} is {condition.value}: it is computed again"
         return f"its file is {condition.value}", told
@@ -55,10 +62,19 @@ def out_of_date(wanted: Wanted, found: Checkpoint, otherwise: str = "") -> tuple
 def up_to_date(results: Results, wanted: Iterable[Wanted], complete: bool = False) -> Results:
     """Return the results that are up to date; ``complete``: of stages with no file that is not."""
     files = list(wanted)
+    _require_unchanged(results, files)
     gaps = {one.address[:4] for one in files if one.reason and complete}
     return results.limited(
         {one.address: one.runs for one in files if not one.reason and one.address[:4] not in gaps}
     )
+
+
+def _require_unchanged(results: Results, wanted: Iterable[Wanted]) -> None:
+    """Raise UserError for a file that served when it was planned, and is another one now."""
+    there = {chunk.address: chunk.attributes for chunk in results.chunks}
+    for one in wanted:
+        if not one.reason and not fits(there.get(one.address, {}), one.attributes):
+            raise UserError(f"{one.path} was replaced while it was to be read; try again")
 
 
 def _outdated(wanted: Wanted, attributes: dict[str, Any]) -> str:

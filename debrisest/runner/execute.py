@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from debrisest.arrays import Data
+from debrisest.errors import UserError
 from debrisest.results import store
 from debrisest.runner.plan import Step
 from debrisest.runner.schedule import Schedule
@@ -50,7 +51,7 @@ def execute(
                 schedule.stop()
                 yield Outcome(step, _said(error))
             elif error is not None:
-                yield Outcome(step, f"{type(error).__name__}: {error}")
+                yield Outcome(step, _sentence(error))
             elif why := lacking(step):
                 yield Outcome(step, why)
             else:
@@ -73,6 +74,12 @@ def _submit(pool: Executor, step: Step) -> Future[None]:
         broken: Future[None] = Future()
         broken.set_exception(error)
         return broken
+
+
+def _sentence(error: BaseException) -> str:
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror}; the same command goes on from here"
+    return str(error) if isinstance(error, UserError) else f"{type(error).__name__}: {error}"
 
 
 def run_step(step: Step) -> None:
@@ -98,7 +105,8 @@ def _read(step: Step) -> Data:
         return {"run": step.address.first_run + np.arange(step.runs, dtype=float)}
     data: Data = {}
     for upstream in step.upstream:
-        found = store.read(upstream.path, step.runs)
+        expected = upstream.attributes | {"runs": step.runs}
+        found = store.read(upstream.path, step.runs, expected=expected)
         if "status" in found:
             found[f"{upstream.address.stage}_status"] = found.pop("status")
         data |= found
@@ -106,13 +114,8 @@ def _read(step: Step) -> Data:
 
 
 def _attributes(step: Step) -> dict[str, Any]:
-    return {
-        "stage": step.address.stage,
-        "estimator": step.address.estimator,
-        "case": step.address.case,
-        "first_run": step.address.first_run,
+    return step.attributes | {
         "runs": step.runs,
-        "stage_key": step.key,
         "inputs": json.dumps(step.inputs),
         "scenario": step.case.as_yaml(),
         "plugins": json.dumps({plugin.path: plugin.digest for plugin in step.case.plugins}),

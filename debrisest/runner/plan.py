@@ -122,7 +122,7 @@ class _Chunk:
         )
         found = store.inspect(step.path)
         reason, notice = out_of_date(step, found, self._asked_for(upstream))
-        same = found.attributes.get("stage_key") == step.key
+        same = store.fits(found.attributes, step.attributes)
         self.held.append(found.attributes.get("runs", 0) if same and reason else 0)
         return replace(step, reason=reason, notice=notice)
 

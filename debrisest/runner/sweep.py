@@ -1,12 +1,14 @@
 """Bring scenarios up to date: plan, run what has a reason to run, tell what happened."""
 
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
 from debrisest.errors import UserError
 from debrisest.files import remove_leftovers
 from debrisest.interrupts import raised
+from debrisest.locked import locked
 from debrisest.results.open import find_results
 from debrisest.runner.execute import execute
 from debrisest.runner.executors import executor
@@ -34,21 +36,28 @@ def bring_up_to_date(
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UserError(f"--out {out}: {error.strerror}; choose another folder") from None
-    for scenario in scenarios:
-        remove_leftovers(out / scenario.name)
-    steps = [step for scenario in scenarios for step in plan(scenario, out, selection)]
-    due = [step for step in steps if step.reason]
-    with raised() as check, progress(len(due), machine.quiet) as told:
-        for step in due:
-            if step.notice:
-                told.say(step.notice)
-        errors = _run(steps, machine, told, check) if due else {}
+    with ExitStack() as locks:
+        for scenario in scenarios:
+            locks.enter_context(locked(out / scenario.name))
+            remove_leftovers(out / scenario.name)
+        steps = [step for scenario in scenarios for step in plan(scenario, out, selection)]
+        errors = _run_due(steps, machine)
     for scenario in scenarios:
         results = find_results(out / scenario.name)
         written = {step.address: step.runs for step in steps if step.name not in errors}
         failed = results.limited(written).failures()
         errors |= {failure.name: failure.why for failure in failed}
     return errors
+
+
+def _run_due(steps: list[Step], machine: Machine) -> dict[str, str]:
+    """Run what is due, if anything is; return the steps that wrote no file, with reasons."""
+    due = [step for step in steps if step.reason]
+    with raised() as check, progress(len(due), machine.quiet) as told:
+        for step in due:
+            if step.notice:
+                told.say(step.notice)
+        return _run(steps, machine, told, check) if due else {}
 
 
 def _run(

@@ -18,6 +18,7 @@ from debrisest.parts.sensors.feature_points import FeaturePoints
 from debrisest.results import store
 from debrisest.results.open import open_results
 from debrisest.results.results import Results
+from debrisest.results.sealed import sealed
 from debrisest.vocabulary import VOCABULARY
 
 SOME = ("--case", "slow", "--estimator", "triad")
@@ -118,8 +119,9 @@ def test_damaged_and_foreign_files_are_named_and_left_out(
     (case / "folder.h5").mkdir()
     (case / "notes.txt").write_text("no file of results by its name")
     shutil.copy(case / "simulate.000000.h5", case / "copy.h5")
-    with h5py.File(case / "recover-wahba.000000.h5", "r+") as file:
-        file.attrs["schema_version"] = store.SCHEMA_VERSION - 1
+    other = case / "recover-wahba.000000.h5"
+    attributes = store.inspect(other).attributes | {"schema_version": store.SCHEMA_VERSION - 1}
+    other.write_bytes(sealed(other.read_bytes(), attributes))
     results = open_results(alone)
     assert set(results.left_out) == {
         f"{truncated} is truncated or damaged",
@@ -138,11 +140,10 @@ def test_damaged_numbers_are_never_handed_over(alone: Path) -> None:
     """They are found when they are read, since opening reads no numbers."""
     path = alone / "slow" / "assess-triad.000000.h5"
     content = bytearray(path.read_bytes())
-    with h5py.File(path, "r") as opened:
-        content[opened["pitch"].id.get_chunk_info(0).byte_offset + 5] ^= 1
+    content[9000] ^= 1
     path.write_bytes(content)
     results = open_results(alone)
-    assert results.load("slow", "triad", names=("run", "rate")).keys() == {"run", "rate"}
+    assert results.runs("slow", "triad", "assess") == 3
     with pytest.raises(UserError, match=f"{path} is truncated or damaged; a sweep"):
         results.load("slow", "triad")
 

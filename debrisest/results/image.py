@@ -1,0 +1,119 @@
+"""Datasets as an HDF5 file in memory, and back.
+
+They are flat float64 (names are text) with units and dimension scales, so that h5py and xarray
+(``engine="h5netcdf"``) read them without this package.
+"""
+
+from collections.abc import Container, Mapping
+from io import BytesIO
+from typing import Any
+
+import h5py
+import numpy as np
+
+from debrisest.arrays import Data
+from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, has_runs
+
+_NO_COORDINATE = "This is a netCDF dimension but not a netCDF variable."
+
+
+def image_of(data: Data, attributes: Mapping[str, Any], frames: Mapping[str, str]) -> bytes:
+    """Return an HDF5 file; ``frames`` becomes the attribute ``frame`` of the datasets it names."""
+    options = {"driver": "core", "backing_store": False, "libver": "latest", "track_order": True}
+    with h5py.File("image", "w", **options) as file:
+        file.attrs.update(attributes)
+        _write_data(file, data)
+        for name in data.keys() & frames.keys():
+            file[name].attrs["frame"] = frames[name]
+        file.flush()
+        return bytes(file.id.get_file_image())
+
+
+def opened(image: bytes) -> Any:
+    """Return an image as an open file of h5py."""
+    return h5py.File(BytesIO(image), "r")
+
+
+def check(image: bytes) -> None:
+    """Raise ValueError for a dataset that is not as the vocabulary has it, or lies elsewhere."""
+    with opened(image) as file:
+        for name in file:
+            _dataset(file, name)
+
+
+def data_of(file: Any, names: Container[str], first: int = 0, end: int | None = None) -> Data:
+    """Return those of the named datasets that are there, of the runs ``first`` up to ``end``.
+
+    Raises ValueError as ``check`` does.
+    """
+    data: Data = {}
+    for name in filter(names.__contains__, file):
+        if (dataset := _dataset(file, name)) is not None:
+            value = dataset[first:end] if has_runs(name) else dataset[()]
+            is_text = _is_text(dataset)
+            data[name] = np.array([text.decode() for text in value]) if is_text else value
+    return data
+
+
+def frames_of(file: Any) -> dict[str, str]:
+    """Return the axes and origin of those datasets that say it."""
+    said = ((name, dataset.attrs.get("frame")) for name, dataset in file.items())
+    return {name: str(frame) for name, frame in said if frame is not None}
+
+
+def _dataset(file: Any, name: str) -> Any:
+    """Return a dataset that the vocabulary has; None for others, and for the length of an axis.
+
+    Raises ValueError unless it lies in the file itself and has its axes, type and unit.
+    """
+    dataset = file[name] if isinstance(file.get(name, getlink=True), h5py.HardLink) else None
+    if not isinstance(dataset, h5py.Dataset) or dataset.is_virtual or dataset.external:
+        raise ValueError(f"{name} is no dataset of this file")
+    if name not in VOCABULARY or (name in COORDINATES and _is_length(dataset)):
+        return None
+    if not (_is_text(dataset) or dataset.dtype == np.float64):
+        raise ValueError(f"{name} is of the type {dataset.dtype}")
+    if dataset.attrs.get("units") != VOCABULARY[name].unit:
+        raise ValueError(f"{name} is not in {VOCABULARY[name].unit}")
+    _lengths(name, dataset.shape)
+    return dataset
+
+
+def _lengths(name: str, shape: tuple[int, ...]) -> dict[str, int]:
+    """Return the length of each axis of a dataset, or raise ValueError for one it cannot have."""
+    lengths = dict(zip(axes_of(name, len(shape)), shape))
+    for axis, length in lengths.items():
+        if AXIS_LENGTH.get(axis, length) != length:
+            raise ValueError(f"{name} has {length} values along {axis}")
+    return lengths
+
+
+def _is_length(scale: Any) -> bool:
+    return bytes(scale.attrs.get("NAME", b"")).startswith(_NO_COORDINATE.encode())
+
+
+def _is_text(dataset: Any) -> bool:
+    return h5py.check_string_dtype(dataset.dtype) is not None
+
+
+def _write_data(file: Any, data: Data) -> None:
+    scales: dict[str, Any] = {}
+    for name in sorted(data, key=lambda name: name not in COORDINATES):
+        quantity, value = VOCABULARY[name], data[name]
+        dataset = _create(file, name, value)
+        dataset.attrs.update({"units": quantity.unit, "long_name": quantity.long_name})
+        if name in COORDINATES:
+            dataset.make_scale(name)
+            scales[name] = dataset
+            continue
+        for axis, (label, length) in enumerate(_lengths(name, value.shape).items()):
+            if label not in scales:
+                scales[label] = file.create_dataset(label, data=np.zeros(length))
+                scales[label].make_scale(f"{_NO_COORDINATE}{length:10d}")
+            dataset.dims[axis].attach_scale(scales[label])
+
+
+def _create(file: Any, name: str, value: Any) -> Any:
+    if value.dtype.kind in "US":
+        return file.create_dataset(name, data=value.tolist(), dtype=h5py.string_dtype())
+    return file.create_dataset(name, data=value.astype(np.float64))
