@@ -175,6 +175,25 @@ def test_no_motion_is_a_value_and_impossible_to_miss(
     assert "nan" not in result.stdout
 
 
+def test_a_steady_spin_has_an_attitude_and_no_inertia(tmp_path: Path, cli: Callable) -> None:
+    times = np.arange(0.0, 200.0, 4.0)
+    turn = Rotation.from_rotvec(np.outer(0.03 * times, [0.0, 0.6, 0.8]))
+    noise = Rotation.from_rotvec(0.01 * np.random.default_rng(7).standard_normal((len(times), 3)))
+    rows = pd.DataFrame((noise * turn).as_quat(scalar_first=True), columns=["q0", "q1", "q2", "q3"])
+    rows.insert(0, "time_s", times)
+    rows.to_csv(tmp_path / "spin.csv", index=False)
+    options = ("--sigma-deg", np.degrees(0.01), "--out", tmp_path / "spin", "--quiet")
+    result = cli("estimate", tmp_path / "spin.csv", *options)
+    assert "accepted: the body turns steadily about one axis" in result.stdout
+    assert "\ninertia        the motion does not show them: it turns steadily" in result.stdout
+    data = stored(tmp_path / "spin")
+    sigma = turn_sigma(data)
+    assert (sigma < np.sqrt(3) * 0.01).all()
+    assert ((rotations(data["q_if"]) * turn.inv()).magnitude() < 4 * sigma).all()
+    off = np.linalg.norm(np.cross(data["spin_axis_i"], [0.0, 0.6, 0.8]))
+    assert off < 3 * np.linalg.norm(data["spin_axis_i_sigma"]) < 0.05
+
+
 def test_three_epochs_are_too_few(few: Path, tmp_path: Path, cli: Callable) -> None:
     pd.read_csv(few).iloc[:3].to_csv(few, index=False)
     result = cli("estimate", few, "--out", tmp_path / "three", "--sigma-deg", 1, "--quiet")

@@ -65,11 +65,20 @@ def _along(motion: Motion, path: Path) -> Array:
     result[:, TURN, TURN], result[:, RATE, RATE] = path.turn_covariance, path.rate_covariance
     if motion.arc is None:
         return result
-    by = _transitions(motion.arc, path.times)
     plain = np.eye(UNKNOWNS)
     plain[INERTIA, INERTIA] = _TO_PLAIN
-    whole = plain @ by
-    return whole @ motion.claimed @ np.swapaxes(whole, -1, -2)
+    return plain @ _claimed(motion, motion.arc, path.times) @ plain.T
+
+
+def _claimed(motion: Motion, arc: Arc, times: Array) -> Array:
+    """Covariance (time, 11, 11) of the arc at the times: of an inertia not claimed, the prior's.
+
+    Attitude and rate keep the path's, which an inertia that nothing shows does not widen.
+    """
+    by = _transitions(arc, times)
+    result = np.asarray(by @ motion.covariance @ np.swapaxes(by, -1, -2))
+    result[:, INERTIA, INERTIA] = motion.claimed[INERTIA, INERTIA]
+    return result
 
 
 def _transitions(arc: Arc, times: Array) -> Array:
@@ -129,8 +138,7 @@ def _at_end(motion: Motion, times: Array) -> Data:
     if motion.arc is None or not motion.status.accepted:
         return {name: np.asarray(value, dtype=np.float64) for name, value in result.items()}
     arc = moved(motion.arc, float(times[-1]))
-    by = _transitions(motion.arc, times[-1:])[0]
-    found = derived(arc, by @ motion.claimed @ by.T)
+    found = derived(arc, _claimed(motion, motion.arc, times[-1:])[0])
     result |= {
         "spin_axis_i": found.spin_axis.value,
         "spin_axis_i_sigma": found.spin_axis.sigma,
