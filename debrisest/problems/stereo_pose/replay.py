@@ -93,8 +93,8 @@ def rows(
     by_body = by_arm @ turn
     for i in range(points):
         derivative[:, :, i, :, 14 + 3 * i : 17 + 3 * i] = by_body[:, :, i]
-    predicted = shown.reshape(*batch, -1)
-    flat = derivative.reshape(*predicted.shape, -1)
+    predicted = shown.reshape(*batch, points * len(known.rows))
+    flat = derivative.reshape(*predicted.shape, 14 + 3 * points)
     if not known.shown.acceleration:
         return predicted, flat
     acceleration, by_start = _acceleration_rows(known, states, turning, epochs)
