@@ -260,7 +260,7 @@ def test_two_problems_in_one_catalog(
     assert result.exit_code == 0
     small.write_text(small.read_text().replace("kind: unscented", "kind: kalmann"))
     result = cli("validate", small)
-    assert "'kalmann'; allowed: unscented, " in result.stderr
+    assert "'kalmann'; allowed: batch, unscented, " in result.stderr
     assert ", kalman (did you mean kalman?)" in result.stderr
 
 
