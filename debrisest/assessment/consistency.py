@@ -9,6 +9,7 @@ statistic is where that of a consistent estimator lies with a probability of 95 
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.filters.linear_algebra import solve
 
 CONFIDENCE = 0.95
 _MEANS, _MEDIANS = ("mean", "value", "rmse"), ("median", "p50")
@@ -27,7 +28,7 @@ def normalized_square(error: Array, covariance: Array) -> Array:
         sound = np.asarray(np.isfinite(scaled).all((-2, -1)) & np.isfinite(error).all(-1))
         filled = np.where(sound[..., None, None], scaled, np.eye(error.shape[-1]))
         weighted = np.where(sound[..., None], scale * error, 0.0)
-    solved = np.linalg.solve(filled, weighted[..., None])[..., 0]
+    solved = solve(filled, weighted[..., None])[..., 0]
     return np.where(sound, (weighted * solved).sum(-1), np.nan)
 
 

@@ -24,7 +24,8 @@ class Statistic(NamedTuple):
 
 
 def _rms(values: Array) -> Array:
-    return np.asarray(np.sqrt(np.mean(values**2, axis=-1)))
+    with np.errstate(over="ignore"):
+        return np.asarray(np.sqrt(np.mean(values**2, axis=-1)))
 
 
 def _mean(values: Array) -> Array:

@@ -109,9 +109,9 @@ def _model_in_doubt(solution: Solution, plain: Tracks) -> Solution:
 
 def _typical(points: Array, sigma: Array | float) -> float:
     """Root mean square of the given sigma over what is seen, m."""
-    seen = np.isfinite(points).all(axis=-1)
     weight = tracks(np.zeros(len(points)), points, sigma).weight
-    return float(np.sqrt(np.mean(1.0 / weight[seen & (weight > 0.0)]))) if seen.any() else 1.0
+    used = weight[weight > 0.0]
+    return float(np.sqrt(np.mean(1.0 / used))) if len(used) else 1.0
 
 
 def _information(count: int, sigma: Array | float, seen: BoolArray) -> Array:
@@ -155,8 +155,9 @@ def _with_points(solution: Solution, plain: Tracks, tracked: Tracks, unit: float
 
 def _without_points(solution: Solution, times: Array, unit: float) -> Motion:
     used = np.zeros(len(times), dtype=bool)
-    used[np.searchsorted(times, solution.evidence.times)] = solution.evidence.dof > 0.0
-    share = float(1.0 - np.mean(solution.evidence.dof > 0.0)) if len(used) else 0.0
+    counted = solution.evidence.dof > 0.0
+    used[np.searchsorted(times, solution.evidence.times)] = counted
+    share = float(1.0 - np.mean(counted)) if len(counted) else 0.0
     nothing = np.zeros((0, 3))
     return _motion(solution, nothing, nothing, np.zeros(0, dtype=bool), used, share, unit)
 

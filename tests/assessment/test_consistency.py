@@ -43,6 +43,15 @@ def test_the_interval_covers_what_it_promises():
     assert np.mean((means > low) & (means < high)) == pytest.approx(0.95, abs=0.01)
 
 
+def test_a_singular_covariance_has_no_square_and_leaves_the_others():
+    error, covariance = draws(3)
+    spoilt = covariance.copy()
+    spoilt[0] = np.ones_like(spoilt[0])
+    squares = normalized_square(error, spoilt)
+    assert np.isnan(squares[0])
+    np.testing.assert_array_equal(squares[1:], normalized_square(error, covariance)[1:])
+
+
 def test_what_is_missing_does_not_count():
     error, covariance = draws(3, runs=6)
     error[2, 1] = np.nan

@@ -48,6 +48,11 @@ def test_attitudes_without_any_motion_in_them(tumbling) -> None:
     assert not estimate_from_attitudes(tumbling.times[:100], q, 0.05).status.accepted
 
 
+def test_no_attitude_at_all(tumbling) -> None:
+    motion = estimate_from_attitudes(tumbling.times, np.full((len(tumbling.times), 4), np.nan), 0.1)
+    assert motion.status is Status.TOO_FEW
+
+
 def test_points_without_noise(tumbling, box) -> None:
     points = tumbling.points(np.random.default_rng(4), 0.0)
     motion = estimate_from_points(tumbling.times, points, None, box)

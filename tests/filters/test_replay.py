@@ -142,6 +142,16 @@ def test_what_is_not_finite_is_a_value():
     np.testing.assert_array_equal(final.status, expected)
 
 
+@pytest.mark.parametrize("gate", [True, False])
+def test_runs_that_all_lack_a_start_end_in_a_status(gate):
+    prior, covariance, measured, _ = data(3)
+    lost = replay(linear_model(), np.nan * prior, covariance, measured, gate=gate)
+    final = smooth(linear_model(), np.nan * prior, covariance, measured, lost, gate=gate)
+    for estimates in (lost, final):
+        assert set(estimates.status) == {ReplayStatus.NO_START.sentence}
+        assert np.isnan(estimates.state).all()
+
+
 def test_without_measurements_the_prior_is_propagated():
     prior, covariance, measured, _ = data(4)
     measured[:] = np.nan

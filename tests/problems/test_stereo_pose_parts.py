@@ -8,8 +8,9 @@ from debrisest.clock import Clock
 from debrisest.filters.estimates import Estimates
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose import data as of_data
-from debrisest.problems.stereo_pose.model import Q, measurement
+from debrisest.problems.stereo_pose.model import RATE, K, Q, measurement
 from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditive
+from debrisest.problems.stereo_pose.replay import rows
 from debrisest.problems.stereo_pose.score import plain_covariance, scores
 
 POINTS, EPOCHS = 5, 4
@@ -66,16 +67,27 @@ def test_states_and_parts_are_inverse(states, data):
 @pytest.mark.parametrize("measures", [None, ["pixels"], ["disparity", "pixels"]])
 def test_rows_come_in_the_order_of_the_model(data, states, measures):
     known = of_data.geometry_of(data, CLOCK, measures)
-    rows = of_data.measured_of(data, known.shown)
+    found = of_data.measured_of(data, known.shown)
     expected = np.stack([measurement(known, states[:, k], k) for k in range(EPOCHS)], axis=1)
     count = expected.shape[-1] - 3 * known.shown.acceleration
-    assert rows[..., :count] == pytest.approx(expected[..., :count], abs=1e-12)
-    assert rows.shape == expected.shape
+    assert found[..., :count] == pytest.approx(expected[..., :count], abs=1e-12)
+    assert found.shape == expected.shape
     noise = of_data.noise_of(data, known)
     assert noise.shape == expected.shape[-1:]
     per_point = [1e-5] * 4 + [3e-5] * known.shown.disparity
     assert noise[:count] == pytest.approx(per_point * POINTS, rel=1e-15)
     assert set(noise[count:]) <= {1e-6}
+
+
+def test_the_acceleration_alone_has_three_rows(data, states):
+    known = of_data.geometry_of(data, CLOCK, ["acceleration"])
+    epochs = np.arange(EPOCHS)
+    slow = states[:, 0].copy()
+    slow[:, RATE], slow[:, K] = 0.01, 0.1
+    course, turning = chart.propagate(known, slow, 0, EPOCHS - 1)
+    found, derivative = rows(known, course, turning, np.tile(np.eye(6), (EPOCHS, 1, 1)), epochs)
+    assert found.shape == of_data.measured_of(data, known.shown).shape == (2, EPOCHS, 3)
+    assert derivative.shape == (2, EPOCHS, 3, 14 + 3 * POINTS)
 
 
 def test_what_no_sensor_measures_is_told(data):

@@ -115,6 +115,11 @@ def test_unknown_geometry_gives_the_same_body_in_axes_of_its_own(measured) -> No
     assert np.all(np.linalg.norm(turned - inertial, axis=-1) < 6 * sigma)
 
 
+def test_points_that_are_said_to_have_no_noise_are_refused(measured) -> None:
+    with pytest.raises(ValueError, match="their noise must be positive"):
+        estimated(measured | {"point_noise": np.zeros(RUNS)})
+
+
 def test_points_that_do_not_count_are_counted(measured) -> None:
     points = measured["measured_point"].copy()
     spoilt = np.flatnonzero(np.isfinite(points[0, :, 2, 0]))[3:9]

@@ -4,6 +4,7 @@ The cost is twice the negative logarithm of the posterior density: the normalise
 prior's error and of the residuals. Its minimum is the maximum a posteriori estimate.
 """
 
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -93,8 +94,7 @@ def normal_equations(
     derivative: Array, residual: Array, weight: Array
 ) -> tuple[Array, Array, Array]:
     """``H^T W H``, ``H^T W r`` and ``r^T W r`` per run, of rows ``(run, ..., m, n_e)``."""
-    runs, n_e = len(derivative), derivative.shape[-1]
-    rows = int(np.prod(derivative.shape[1:-1]))
+    runs, rows, n_e = len(derivative), prod(residual.shape[1:]), derivative.shape[-1]
     flat = (weight[..., None] * derivative).reshape(runs, rows, n_e)
     weighted = (weight * residual).reshape(runs, rows, 1)
     transposed = np.swapaxes(flat, -1, -2)

@@ -136,6 +136,8 @@ def _filter(
     back = model.inverse_chart(arc.prior)
     belief = Belief(arc.prior, np.swapaxes(back, -1, -2) @ arc.information @ back)
     for k in range(arc.measured.shape[1]):
+        if len(going) == 0:
+            break
         if len(going) < len(belief.state):
             model, belief, arc = model.of(going), take(belief, going), take(arc, going)
         if k > 0:

@@ -1,4 +1,8 @@
-"""True motion of the target and first guesses of it, for the stereo pose problem."""
+"""True states and first guesses of the stereo pose problem without a scenario.
+
+For tests and benchmarks of the model; a scenario has `debrisest.parts.truth.seen_from_leader` and
+`debrisest.parts.starts.drawn_pose`.
+"""
 
 import numpy as np
 

@@ -105,6 +105,8 @@ def _from_points(known: bool, data: Data, times: Array, run: int) -> Motion:
     if sigma is None and "point_noise" in data:
         sigma = np.full(points.shape, data["point_noise"][run])
     given = None if sigma is None or np.isnan(sigma).all() else sigma
+    if given is not None and not np.nanmax(given) > 0.0:
+        raise ValueError("points without noise weigh infinitely: their noise must be positive")
     model = data["known_point_f"][run] if known else None
     return estimate_from_points(times, points, given, model)
 

@@ -1,7 +1,9 @@
 """Inertia tensors in the feature frame as five numbers without constraints.
 
 A tensor is ``exp(S)`` with ``S`` symmetric and traceless, since its scale does not matter; the
-numbers are ``S11, S22, S12, S13, S23``. Any ``S`` gives a positive tensor.
+numbers are ``S11, S22, S12, S13, S23``. Any ``S`` gives a positive tensor. This differs from
+`debrisest.dynamics.log_inertia` in its basis, which is not orthonormal: first guesses, their
+variances and stored estimates of ``log_inertia`` count in these numbers.
 """
 
 import numpy as np

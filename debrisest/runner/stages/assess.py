@@ -7,6 +7,7 @@ import numpy as np
 from debrisest.arrays import Data
 from debrisest.assessment.consistency import chart_free
 from debrisest.assessment.statistics import per_dimension
+from debrisest.roles import ProblemPart, Window
 from debrisest.runner.stages.reason import about
 from debrisest.scenario.case import Case
 
@@ -37,8 +38,14 @@ def run(case: Case, estimator: str, data: Data) -> Data:
     if chosen.problem is not None:
         result |= diagnostics(data)
         with about(f"estimators.{estimator}.problem", chosen.problem):
-            result |= chosen.problem.assess(data, case.scenario.scored)
+            result |= _scored(chosen.problem, data, case.scenario.scored)
     return result
+
+
+def _scored(problem: ProblemPart, data: Data, window: Window) -> Data:
+    """Return the errors of the estimates; those of a filter that diverged may be infinite."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return problem.assess(data, window)
 
 
 def diagnostics(data: Data) -> Data:

@@ -142,3 +142,7 @@ def test_a_mistuned_interval_is_noticed(spread: float) -> None:
     low = binomial_tail(hits, 0.934, below=True)
     high = binomial_tail(hits, 0.95, below=False)
     assert min(low, high) < 1e-4
+
+
+def test_the_rms_of_a_diverged_run_may_be_infinite() -> None:
+    assert per_run("rmse", np.full((1, 4), 1e200), ALL) == [np.inf]
