@@ -1,5 +1,6 @@
 """Run the steps of a plan on any ``concurrent.futures.Executor``, resuming from files."""
 
+import errno
 import json
 import multiprocessing
 import signal
@@ -24,6 +25,9 @@ from debrisest.runner.plan import Step
 from debrisest.runner.stages.isolate import isolate
 from debrisest.runner.stages.pipeline import STAGES
 from debrisest.vocabulary import VOCABULARY
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+"""Where no other step could write its file either."""
 
 
 class Outcome(NamedTuple):
@@ -108,6 +112,8 @@ def execute(steps: Sequence[Step], pool: Executor, width: int) -> Iterator[Outco
                 yield Outcome(step, "a worker process was ended; run again to go on")
             elif error is not None:
                 waiting = [w for w in waiting if step.path not in {up.path for up in w.upstream}]
+                if getattr(error, "errno", None) in _NO_ROOM:
+                    waiting = []
                 yield Outcome(step, _sentence(error))
             else:
                 unfinished.discard(step.path)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from debrisest.files import replacing
+from debrisest.files import put
 from debrisest.results.assessed import assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
@@ -37,7 +37,6 @@ def chosen(rows: pd.DataFrame, asked: Callable[[str, str], bool]) -> pd.DataFram
 
 
 def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> None:
-    """Write ``tables.csv`` and beside it the tables as in the paper."""
+    """Write ``tables.csv`` and beside it the tables as in the paper, where they are not so yet."""
     for form in ("csv", "md", "tex"):
-        with replacing(out / scenario.name / f"tables.{form}") as path:
-            path.write_text(render(scenario, rows, form), encoding="utf-8", newline="\n")
+        put(out / scenario.name / f"tables.{form}", render(scenario, rows, form).encode())
