@@ -29,6 +29,13 @@ def replacing(path: Path) -> Iterator[Path]:
         raise OSError(error.errno, os.strerror(error.errno), str(path)) from None
 
 
+def put(path: Path, content: bytes) -> None:
+    """Write a file in one step unless it holds just this already, on a disk to read from, say."""
+    if not (path.is_file() and path.read_bytes() == content):
+        with replacing(path) as temporary:
+            temporary.write_bytes(content)
+
+
 def remove_leftovers(folder: Path) -> None:
     """Remove temporary files of this machine whose writers are no longer alive."""
     for path in folder.rglob(".*.tmp"):

@@ -6,6 +6,7 @@ from typing import Any
 
 from typer.core import TyperGroup
 
+from debrisest.cli.streams import steady
 from debrisest.errors import UserError
 from debrisest.interrupts import SENTENCE
 
@@ -15,8 +16,15 @@ class Commands(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         """Run a command."""
+        with steady():
+            return self._invoke(ctx)
+
+    def _invoke(self, ctx: Any) -> Any:
         try:
-            return super().invoke(ctx)
+            try:
+                return super().invoke(ctx)
+            finally:
+                sys.stdout.flush()
         except UserError as error:
             _stop(2, *error.problems)
         except OSError as error:

@@ -65,12 +65,10 @@ def plot(
 
     scenarios = load_all(configs, settings, plugins)
     selection = select(scenarios, runs, case, estimator)
-    for scenario in scenarios:
-        if not set(scenario.cases) & set(selection.cases or scenario.cases):
-            continue
-        for path in draw_all(scenario, out, plan(scenario, out, selection)):
-            if not quiet:
-                print(path)
+    asked = [one for one in scenarios if set(one.cases) & set(selection.cases or one.cases)]
+    drawn = [path for one in asked for path in draw_all(one, out, plan(one, out, selection))]
+    if not quiet:
+        print(*drawn, sep="\n")
 
 
 def status(
@@ -104,13 +102,17 @@ def show_tables(
     form: Format | None,
     check: bool,
 ) -> bool:
-    """Write all tables, print them in a format; return whether a verdict is not as expected."""
+    """Write all tables, print them in a format; return whether a verdict is not as expected.
+
+    They are printed too where they cannot be written, which then raises OSError.
+    """
     from debrisest.runner.plan import Selection, plan
     from debrisest.show.tables.cells import unexpected
     from debrisest.show.tables.render import render_all
     from debrisest.show.tables.tabulate import chosen, tabulate, write_tables
 
     wrong: list[str] = []
+    unwritten: list[OSError] = []
     shown: list[tuple[LoadedScenario, DataFrame]] = []
     for scenario in scenarios:
         rows, stale = tabulate(scenario, out, plan(scenario, out, Selection(selection.runs)))
@@ -119,8 +121,11 @@ def show_tables(
             more = f" (and {len(stale) - 1} more)" if len(stale) > 1 else ""
             print(f"left out of the tables: {step.name}: {step.reason}{more}", file=sys.stderr)
         if not rows.empty:
-            for sentence in write_tables(scenario, out, rows):
-                print(sentence, file=sys.stderr)
+            try:
+                for sentence in write_tables(scenario, out, rows):
+                    print(sentence, file=sys.stderr)
+            except OSError as error:
+                unwritten.append(error)
             shown.append((scenario, chosen(rows, asked)))
         wrong += unexpected(scenario, rows, asked)
     if shown and form is not None:
@@ -132,4 +137,6 @@ def show_tables(
         for sentence in wrong:
             print(sentence, file=sys.stderr)
         print(f"{len(wrong)} verdicts differ from the expected ones", file=sys.stderr)
+    for failure in unwritten:
+        raise failure
     return check and bool(wrong)

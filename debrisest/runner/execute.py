@@ -1,5 +1,6 @@
 """Run the steps of a plan on any ``concurrent.futures.Executor``, resuming from files."""
 
+import errno
 import json
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
@@ -16,6 +17,9 @@ from debrisest.runner.schedule import Schedule
 from debrisest.runner.stages.isolate import isolate
 from debrisest.runner.stages.pipeline import STAGES
 from debrisest.vocabulary import VOCABULARY
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+"""Where no other step could write its file either."""
 
 
 class Outcome(NamedTuple):
@@ -51,6 +55,8 @@ def execute(
                 schedule.stop()
                 yield Outcome(step, _said(error))
             elif error is not None:
+                if getattr(error, "errno", None) in _NO_ROOM:
+                    schedule.stop()
                 yield Outcome(step, _sentence(error))
             elif why := lacking(step):
                 yield Outcome(step, why)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from debrisest.files import replacing
+from debrisest.files import put
 from debrisest.results.assessed import assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
@@ -37,7 +37,7 @@ def chosen(rows: pd.DataFrame, asked: Callable[[str, str], bool]) -> pd.DataFram
 
 
 def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> list[str]:
-    """Write ``tables.csv`` and beside it the tables as in the paper.
+    """Write ``tables.csv`` and beside it the tables as in the paper, where they are not so yet.
 
     A file of such a name that was not written by this is renamed; returns a sentence on each.
     """
@@ -47,8 +47,7 @@ def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> lis
         if not _ours(target, mark):
             target.replace(own := target.with_name(f"{target.name}.old"))
             kept.append(f"{target}: this file was not written by debrisest; it is now {own.name}")
-        with replacing(target) as path:
-            path.write_text(render(scenario, rows, form), encoding="utf-8", newline="\n")
+        put(target, render(scenario, rows, form).encode())
     return kept
 
 

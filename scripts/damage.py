@@ -1,0 +1,158 @@
+"""Damage files of results at random and count what the commands make of it.
+
+``python scripts/damage.py [SEED] [COUNT]`` sweeps the small scenario of the tests, damages one file
+at a time (bytes, whole pages, the structure as h5py edits it), and runs ``status``, ``table`` and
+``sweep`` on it, each within two seconds of CPU. It prints, for every kind of damage, how many there
+were, and how many ended in a trace, a hang, or wrong tables before the sweep or after it.
+"""
+
+import io
+import signal
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import redirect_stderr, redirect_stdout, suppress
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from debrisest.cli import app
+
+CONFIG = Path(__file__).parent.parent / "tests" / "scenarios" / "small.yaml"
+PAGE, LIMIT_S = 4096, 2
+HANG = "hang"
+Damage = Callable[[Path], object]
+
+
+def damages(
+    rng: np.random.Generator, size: int, count: int, page: int
+) -> Iterator[tuple[str, Damage]]:
+    """Yield kinds of damage to a file of ``size`` bytes: random ones, then every page."""
+    for _ in range(count):
+        yield "bytes", _overwriting(int(rng.integers(size)), rng.bytes(int(rng.integers(1, 9))))
+        yield "bit", _flipping(int(rng.integers(size)), 1 << int(rng.integers(8)))
+        yield "truncated", _truncating(int(rng.integers(size)))
+        yield "structure", _editing(rng)
+    for start in range(0, size, page):
+        yield "page of zeros", _overwriting(start, bytes(min(page, size - start)))
+        yield "page of noise", _overwriting(start, rng.bytes(min(page, size - start)))
+
+
+def _overwriting(start: int, content: bytes) -> Damage:
+    def damage(path: Path) -> None:
+        with path.open("r+b") as file:
+            file.seek(start)
+            file.write(content)
+
+    return damage
+
+
+def _flipping(at: int, mask: int) -> Damage:
+    return lambda path: _overwriting(at, bytes([path.read_bytes()[at] ^ mask]))(path)
+
+
+def _truncating(length: int) -> Damage:
+    return lambda path: path.write_bytes(path.read_bytes()[:length])
+
+
+def _editing(rng: np.random.Generator) -> Damage:
+    def damage(path: Path) -> None:
+        with h5py.File(path, "r+") as file:
+            edit = EDITS[int(rng.integers(len(EDITS)))]
+            edit(file, str(rng.choice(list(file))), str(rng.choice(list(file.attrs))))
+
+    return damage
+
+
+def _replace(file: Any, name: str, value: Any) -> None:
+    del file[name]
+    file[name] = value
+
+
+EDITS: list[Callable[[Any, str, str], object]] = [
+    lambda file, name, _: file.pop(name),
+    lambda file, name, _: file.move(name, f"{name}_moved"),
+    lambda file, name, _: _replace(file, name, np.zeros(3)),
+    lambda file, name, _: _replace(file, name, "words"),
+    lambda file, name, _: _replace(file, name, h5py.ExternalLink("other.h5", name)),
+    lambda file, name, _: _replace(file, name, h5py.SoftLink("/run")),
+    lambda file, name, _: file[name].attrs.update({"units": "km"}),
+    lambda file, name, _: file[name].write_direct(np.ones(file[name].shape)),
+    lambda file, name, _: file.create_group("group"),
+    lambda file, _, key: file.attrs.pop(key),
+    lambda file, _, key: file.attrs.update({key: 7.5}),
+    lambda file, _, key: file.attrs.update({key: "other"}),
+]
+
+
+def run(*arguments: object) -> tuple[str, str]:
+    """Run a command; return what it printed, and a trace or a hang in a word."""
+    printed, told = io.StringIO(), io.StringIO()
+    signal.signal(signal.SIGVTALRM, _stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, LIMIT_S)
+    try:
+        with redirect_stdout(printed), redirect_stderr(told):
+            app([str(argument) for argument in arguments])
+    except SystemExit:
+        return printed.getvalue(), "trace" if "Traceback" in told.getvalue() else ""
+    except TimeoutError:
+        return "", HANG
+    except Exception:
+        return "", "trace"
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+    return printed.getvalue(), ""
+
+
+def _stop(*_: object) -> None:
+    raise TimeoutError
+
+
+def tally(
+    out: Path, seed: int, count: int, files: int, page: int = PAGE
+) -> Counter[tuple[str, str]]:
+    """Return how many damages of each kind ended how; ``out`` holds whole results before."""
+    rng = np.random.default_rng(seed)
+    table = out / "small" / "tables.csv"
+    right, found = table.read_bytes(), Counter[tuple[str, str]]()
+    there = sorted(out.rglob("slow/*.h5"))
+    for path in (there[index] for index in rng.permutation(len(there))[:files]):
+        content = path.read_bytes()
+        for kind, damage in damages(rng, len(content), count, page):
+            with suppress(TypeError, ValueError, KeyError, OSError, RuntimeError):
+                damage(path)
+            found[kind, "all"] += 1
+            found.update((kind, how) for how in _outcomes(out, table, right))
+            path.write_bytes(content)
+    return found
+
+
+def _outcomes(out: Path, table: Path, right: bytes) -> Iterator[str]:
+    """Yield what went wrong: before the sweep a table may have fewer cells, but no wrong one."""
+    some = ("--out", out)
+    ended = [run(command, CONFIG, *some)[1] for command in ("status", "table")]
+    cells = set(table.read_bytes().splitlines())
+    if not {line for line in cells if b"slow" in line} <= set(right.splitlines()):
+        yield "wrong before"
+    ended.append(run("sweep", CONFIG, *some, "--jobs", 1, "--quiet")[1])
+    yield from filter(None, ended)
+    if table.read_bytes() != right:
+        yield "wrong"
+
+
+def main() -> None:
+    """Print the counts of all kinds."""
+    seed, count = (int(text) for text in [*sys.argv[1:], "1", "40"][:2])
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "out"
+        run("sweep", CONFIG, "--out", out, "--jobs", 1)
+        found = tally(out, seed, count, files=3)
+    for kind in dict.fromkeys(kind for kind, _ in found):
+        print(kind, {how: number for (of, how), number in found.items() if of == kind})
+
+
+if __name__ == "__main__":
+    main()
