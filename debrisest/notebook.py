@@ -17,7 +17,7 @@ from debrisest.batch.estimate import (
 )
 from debrisest.batch.motion import Motion
 from debrisest.errors import UserError
-from debrisest.measurements import require_fitting
+from debrisest.measured.arrays import require_fitting
 from debrisest.plugins.load import load_plugins, read_plugins
 from debrisest.runner.plan import Selection, check_selection, plan
 from debrisest.runner.sweep import Machine, bring_up_to_date

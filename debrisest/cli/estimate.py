@@ -79,8 +79,8 @@ def _scenario(file: Path, options: dict[str, Any], folder: Path) -> tuple[str, l
     """Return a scenario for ``folder`` as YAML, and what the readers understood or doubt."""
     import yaml
 
-    from debrisest.import_measured import measured_keys, source_of
-    from debrisest.measured_scenario import default_scenario
+    from debrisest.measured.default_scenario import default_scenario
+    from debrisest.measured.import_file import measured_keys, source_of
 
     measured = measured_keys(file, options)
     data = source_of(measured, Path()).read(Path())

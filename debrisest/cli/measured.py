@@ -45,7 +45,7 @@ def import_(
     force: Annotated[bool, Option("--force", help="Replace files that are there.")] = False,
 ) -> None:
     """Read measurements of your own, and write them as data and a scenario to edit."""
-    from debrisest.import_measured import import_measured
+    from debrisest.measured.import_file import import_measured
 
     options = {
         "points": points,

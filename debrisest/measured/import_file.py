@@ -10,7 +10,8 @@ import yaml
 from debrisest.arrays import Data
 from debrisest.errors import UserError
 from debrisest.files import replacing
-from debrisest.measured_scenario import Text, default_scenario
+from debrisest.measured.default_scenario import Text, default_scenario
+from debrisest.measured.scenario_like import known_geometry, scenario_like
 from debrisest.parts.sources.poses import MeasuredPoses
 from debrisest.parts.sources.tracks import MeasuredTracks
 from debrisest.results import store
@@ -19,7 +20,6 @@ from debrisest.scenario.document import Document
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import validated
 from debrisest.scenario.schema import measured_model
-from debrisest.scenario_like import known_geometry, scenario_like
 from debrisest.tracks.recognise import Kind, recognise
 
 _POSES = (Kind.POSES, Kind.POSE_LIST)

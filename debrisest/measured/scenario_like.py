@@ -10,7 +10,7 @@ from debrisest.arrays import Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.errors import UserError
-from debrisest.measured_scenario import Text
+from debrisest.measured.default_scenario import Text
 from debrisest.parts.truth.rigid_points import RigidPoints
 from debrisest.scenario.case import Case
 from debrisest.scenario.checks import case_problems, file_problems
