@@ -14,7 +14,8 @@ from debrisest.scenario.document import KeyPath
 from debrisest.scenario.kept import kept_too_late, not_kept
 from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.names import same_on_disk
-from debrisest.scenario.schema import Scenario, Table, window_of
+from debrisest.scenario.schema import Scenario, Table
+from debrisest.scenario.window import window_of
 from debrisest.vocabulary import VOCABULARY
 
 MOST_EPOCHS = 10_000_000

@@ -1,6 +1,5 @@
 """What a scenario file may hold. The kinds come from the catalog."""
 
-import re
 from collections.abc import Sequence
 from functools import cache, reduce
 from operator import or_
@@ -24,33 +23,8 @@ from debrisest.roles import (
     Window,
 )
 from debrisest.scenario.names import CaseName, Line, PartName, TableName
+from debrisest.scenario.window import WindowText, window_of
 from debrisest.vocabulary import VOCABULARY, possible_units
-
-_NUMBER = r"(\d+(?:\.\d+)?)"
-_WINDOW = re.compile(f"^{_NUMBER}-{_NUMBER} s$")
-_INSTANT = re.compile(f"^{_NUMBER} s$")
-
-
-def window_of(text: str, duration: float) -> Window:
-    """Return the time span that ``start``, ``end``, ``a s`` or ``a-b s`` names."""
-    if text == "start":
-        return (0.0, 0.0)
-    if text == "end":
-        return (duration, duration)
-    if instant := _INSTANT.match(text):
-        return (float(instant[1]), float(instant[1]))
-    match = _WINDOW.match(text)
-    if match is None or float(match[1]) >= float(match[2]):
-        raise ValueError(
-            "a window is 'start', 'end', an instant such as '50 s' or a span such as "
-            f"'900-1400 s', not {text!r}"
-        )
-    return (float(match[1]), float(match[2]))
-
-
-def _known_window(text: str) -> str:
-    window_of(text, 0.0)
-    return text
 
 
 def _known_quantity(name: str) -> str:
@@ -66,7 +40,6 @@ def _known_statistic(name: str) -> str:
     return name
 
 
-WindowText = Annotated[str, AfterValidator(_known_window)]
 QuantityName = Annotated[str, AfterValidator(_known_quantity)]
 StatisticName = Annotated[str, AfterValidator(_known_statistic)]
 

@@ -15,7 +15,7 @@ from debrisest.errors import UserError
 from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import allowed_names
-from debrisest.scenario.schema import window_of
+from debrisest.scenario.window import window_of
 from debrisest.show.tables.verdict import Verdict
 from debrisest.vocabulary import VOCABULARY
 

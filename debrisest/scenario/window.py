@@ -1,0 +1,37 @@
+"""Time spans as scenarios write them: start, end, an instant, a span."""
+
+import re
+from typing import Annotated
+
+from pydantic import AfterValidator
+
+from debrisest.roles import Window
+
+_NUMBER = r"(\d+(?:\.\d+)?)"
+_WINDOW = re.compile(f"^{_NUMBER}-{_NUMBER} s$")
+_INSTANT = re.compile(f"^{_NUMBER} s$")
+
+
+def window_of(text: str, duration: float) -> Window:
+    """Return the time span that ``start``, ``end``, ``a s`` or ``a-b s`` names."""
+    if text == "start":
+        return (0.0, 0.0)
+    if text == "end":
+        return (duration, duration)
+    if instant := _INSTANT.match(text):
+        return (float(instant[1]), float(instant[1]))
+    match = _WINDOW.match(text)
+    if match is None or float(match[1]) >= float(match[2]):
+        raise ValueError(
+            "a window is 'start', 'end', an instant such as '50 s' or a span such as "
+            f"'900-1400 s', not {text!r}"
+        )
+    return (float(match[1]), float(match[2]))
+
+
+def _known_window(text: str) -> str:
+    window_of(text, 0.0)
+    return text
+
+
+WindowText = Annotated[str, AfterValidator(_known_window)]
