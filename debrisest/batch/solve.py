@@ -102,7 +102,7 @@ def _torque_free(
         alone = alone and not turns_steadily(scaled, found)
         spread = covariance(found.hold, evidence.unknowns_fixed)
     spread = with_curvature(scaled, found.arc, spread)
-    if not possible(found.arc, spread):
+    if alone and not possible(found.arc, spread):
         return None
     status = Status.ACCEPTED_IN_PART if lost_directions(spread) else Status.ACCEPTED
     if not alone:

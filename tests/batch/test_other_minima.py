@@ -3,7 +3,10 @@
 import numpy as np
 
 from debrisest.batch.arc import Arc
-from debrisest.batch.descent import descend
+from debrisest.batch.descent import PRIOR_SIGMA, descend
+from debrisest.batch.estimate import estimate_from_points
+from debrisest.batch.motion import Status
+from debrisest.batch.observability import inertia_directions
 from debrisest.batch.other_minima import lowest_minimum
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.tracks import tracks
@@ -33,3 +36,13 @@ def test_a_nutation_that_shows_leaves_one_inertia(body_of, box) -> None:
     best, alone = lowest_minimum(evidence, descend(evidence, arc, 50))
     assert alone
     assert np.abs(best.arc.log_inertia - arc.log_inertia).max() < 0.05
+
+
+def test_an_almost_spherical_body_is_accepted_without_inertia(body_of, box) -> None:
+    """The best of all nutations that fit the noise may be one that no body has."""
+    truth = body_of(np.arange(0.0, 300.0), [0.5, -0.7, 0.6], [1.0, 1.001, 0.9995])
+    for seed in range(2):
+        points = truth.points(np.random.default_rng(seed), 0.09)
+        motion = estimate_from_points(truth.times, points, 0.09)
+        assert motion.status is Status.WITHOUT_INERTIA
+        assert np.allclose(inertia_directions(motion.claimed)[0], PRIOR_SIGMA)
