@@ -48,6 +48,8 @@ from debrisest.parts.truth.kepler_orbit import KeplerOrbit
 from debrisest.parts.truth.perturbed_orbit import PerturbedOrbit
 from debrisest.parts.truth.random_box import RandomBox
 from debrisest.parts.truth.random_points import RandomPoints
+from debrisest.parts.truth.random_rigid_body import RandomRigidBody
+from debrisest.parts.truth.random_torque_free import RandomTorqueFree
 from debrisest.parts.truth.random_tumble import RandomTumble
 from debrisest.parts.truth.rigid_points import RigidPoints
 from debrisest.parts.truth.satellite import Satellite
@@ -69,9 +71,9 @@ def kind_of(part: type[Part]) -> str:
 
 
 CATALOG: dict[str, list[type[Part]]] = {
-    "target": [RigidPoints, RandomPoints, RandomBox],
+    "target": [RigidPoints, RandomPoints, RandomBox, RandomRigidBody],
     "orbit": [KeplerOrbit, PerturbedOrbit],
-    "motion": [TorqueFree, GravityGradient, SeenFromLeader, RandomTumble],
+    "motion": [TorqueFree, GravityGradient, SeenFromLeader, RandomTumble, RandomTorqueFree],
     "observers": [Hold, Drift, Satellite, ClosedEllipse],
     "sensors": [
         FeaturePoints,

@@ -1,6 +1,6 @@
 """How often the batch estimate is right, and whether it knows it: random targets, a table.
 
-    python scripts/batch_statistics.py [--runs 100] [--seed 0] [SERIES ...]
+    python scripts/batch_statistics.py [--runs 100] [--seed 0] [--cost] [SERIES ...]
 
 A run is *right* where attitude and rate are within five of their own sigmas at all epochs (a
 chi-square of three degrees of freedom), and *wrong* where the estimate is accepted and is not.
@@ -308,6 +308,27 @@ def report(series: str, runs: int, seed: int) -> None:
     )
 
 
+def of_size(epochs: int, count: int) -> Target:
+    """Return the first published case with so many epochs and points, on a sphere of 2 m."""
+    rng = np.random.default_rng(0)
+    normals = random_directions(rng, (count,))
+    target = of_case("1", 0)._replace(times=np.arange(float(epochs)), model=2.0 * normals)
+    observer = 30.0 * line_of_sight(target.times, False)
+    return target._replace(points=seen_from(observer, target, normals, 0))
+
+
+def report_cost() -> None:
+    """Print CPU seconds over numbers of epochs and of points."""
+    sizes = [(n, 8) for n in (100, 300, 1000, 3000, 10000)]
+    for epochs, count in [*sizes, *((1500, c) for c in (6, 20, 60, 200, 500))]:
+        target, spent = of_size(epochs, count), []
+        for series in ("known", "unknown"):
+            begin = time.process_time()
+            status = estimate(target, series).status
+            spent.append(f"{series} {time.process_time() - begin:.2f} s ({status.name})")
+        print(f"{epochs:6d} epochs, {count:4d} points: CPU {', '.join(spent)}", flush=True)
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -315,7 +336,11 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=50)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--cases", type=int, default=2, help="seeds of each published case")
+    parser.add_argument("--cost", action="store_true", help="CPU over epochs and points, no more")
     given = parser.parse_args()
+    if given.cost:
+        report_cost()
+        return
     if given.cases:
         report_cases(given.cases)
     for series in given.series:

@@ -12,7 +12,7 @@ from debrisest.attitude.points import features_frame
 
 def true_feature_attitude(data: dict[str, NDArray[Any]]) -> Array:
     """Return the true attitude (run, time, 4) of the frame built on the first three features."""
-    q_bf = quaternion.from_matrix(features_frame(data["true_point_b"][0]))
+    q_bf = quaternion.from_matrix(features_frame(data["true_point_b"]))[:, None]
     return quaternion.multiply(data["true_q_ib"], q_bf)
 
 

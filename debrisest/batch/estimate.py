@@ -9,7 +9,7 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray
 from debrisest.attitude import quaternion
 from debrisest.batch.align_clouds import align_clouds
-from debrisest.batch.arc import course
+from debrisest.batch.arc import Arc, course
 from debrisest.batch.attitudes import Attitudes
 from debrisest.batch.free_points import FreePoints
 from debrisest.batch.local_rates import local_rates
@@ -25,13 +25,18 @@ _FEWEST_LEFT = 4  # points of a known body, once some were left out
 
 
 def estimate_from_points(
-    times: Array, points: Array, sigma: Array | float | None, model: Array | None = None
+    times: Array,
+    points: Array,
+    sigma: Array | float | None,
+    model: Array | None = None,
+    near: Arc | None = None,
 ) -> Motion:
     """Return the motion of the body that most of the tracked points belong to.
 
     ``points (time, feature, 3)``, m, in inertially fixed axes from any origin at each epoch, NaN
     where not seen; ``sigma``, m, one number, (time, feature) or (time, feature, 3), or None where
-    it is to be found; ``model (feature, 3)``, m, places in the feature frame, None if unknown.
+    it is to be found; ``model (feature, 3)``, m, places in the feature frame, None if unknown;
+    ``near`` an arc close to the motion, such as that of fewer epochs, which saves the search.
     """
     plain = tracks(times, points, 1.0)
     found = pairs(plain, model)
@@ -52,7 +57,7 @@ def estimate_from_points(
     tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
     if model is not None:
         solution = _model_in_doubt(
-            solve(KnownPoints(tracked, model), times, sigma is not None), plain
+            solve(KnownPoints(tracked, model), times, sigma is not None, near=near), plain
         )
         return _with_points(solution, plain, whole, unit)
     cloud = align_clouds(tracked)
@@ -62,11 +67,13 @@ def estimate_from_points(
     return _with_points(solve(cloud, times, sigma is not None, wider), plain, whole, unit)
 
 
-def estimate_from_attitudes(times: Array, q: Array, sigma: Array | float | None = None) -> Motion:
+def estimate_from_attitudes(
+    times: Array, q: Array, sigma: Array | float | None = None, near: Arc | None = None
+) -> Motion:
     """Return the motion of a body from measured ``q_if (time, 4)``, NaN where there is none.
 
     ``sigma``, rad, one number or (time,); or a covariance (time, 3, 3), rad^2, in inertial axes;
-    or None where it is to be found.
+    or None where it is to be found. ``near`` is as for points.
     """
     seen = np.asarray(np.isfinite(q).all(axis=-1))
     information = _information(len(times), 1.0 if sigma is None else sigma, seen)
@@ -75,14 +82,17 @@ def estimate_from_attitudes(times: Array, q: Array, sigma: Array | float | None 
     if sigma is None:
         unit = max(_noise_of_windows(evidence), _LEAST_NOISE)
         evidence = evidence.scaled(unit)
-    return _without_points(solve(evidence, times, sigma is not None), times, unit)
+    return _without_points(solve(evidence, times, sigma is not None, near=near), times, unit)
 
 
-def estimate_from_rates(times: Array, rate: Array, sigma: Array | float | None = None) -> Motion:
+def estimate_from_rates(
+    times: Array, rate: Array, sigma: Array | float | None = None, near: Arc | None = None
+) -> Motion:
     """Return the motion of a body from measured rates (time, 3), rad/s, in axes fixed in it.
 
     ``sigma``, rad/s, as for attitudes, a covariance in body axes. No attitude is measured: that at
     the arc's epoch is what the rates add up to from the first epoch, and its sigma there is zero.
+    ``near`` is as for points.
     """
     seen = np.asarray(np.isfinite(rate).all(axis=-1))
     information = _information(len(times), 1.0 if sigma is None else sigma, seen)
@@ -91,7 +101,7 @@ def estimate_from_rates(times: Array, rate: Array, sigma: Array | float | None =
     if sigma is None:
         unit = max(_noise_of_windows(evidence), _LEAST_NOISE)
         evidence = evidence.scaled(unit)
-    return _without_points(solve(evidence, times, sigma is not None), times, unit)
+    return _without_points(solve(evidence, times, sigma is not None, near=near), times, unit)
 
 
 def _model_in_doubt(solution: Solution, plain: Tracks) -> Solution:

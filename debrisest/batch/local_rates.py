@@ -18,6 +18,7 @@ _MOST_WINDOWS = 200
 _FEWEST_WINDOWS = 12
 _REWEIGHTINGS = 3
 _CLEAN = 0.3  # of the windows, at least, without outliers
+_SPOILT = 3.0  # chi2/dof, over that of clean windows, of one with outliers
 
 
 class Local(NamedTuple):
@@ -32,7 +33,7 @@ class Local(NamedTuple):
     rate: Array
     """(window, 3), rad/s."""
     covariance: Array
-    """Of the rate (window, 3, 3)."""
+    """Of the rate (window, 3, 3), larger where there are outliers."""
     noise: float
     """Root of chi2/dof of clean windows: the factor by which the noise exceeds what was said."""
 
@@ -88,9 +89,10 @@ def _fits(times: Array, q: Array, information: Array, half: float) -> Local | No
     if not fits:
         return None
     time, attitude, rate, covariance, excess = (np.array(part) for part in zip(*fits))
-    return Local(
-        time, half, attitude, rate, covariance, float(np.sqrt(np.quantile(excess, _CLEAN)))
-    )
+    clean = float(np.quantile(excess, _CLEAN))
+    spoilt = np.where(excess > _SPOILT * clean, excess / max(clean, 1e-300), 1.0)
+    covariance = covariance * spoilt[:, None, None]
+    return Local(time, half, attitude, rate, covariance, float(np.sqrt(clean)))
 
 
 def _both_sides(times: Array, middle: float, half: float) -> bool:

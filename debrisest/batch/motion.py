@@ -27,8 +27,8 @@ class Status(Outcome):
     )
     WITHOUT_INERTIA = (
         2,
-        "the body turns steadily about one axis, as far as the noise shows: attitude and rate "
-        "hold, of the inertia nothing is shown",
+        "the body turns steadily about one axis, as far as the noise shows, or inertias far from "
+        "each other explain the data: attitude and rate hold, of the inertia nothing is shown",
     )
     UNTESTED = (
         3,
@@ -109,11 +109,15 @@ class Motion(NamedTuple):
     @property
     def claimed(self) -> Array:
         """Covariance (11, 11) of what is claimed: the prior's of an inertia that is not shown."""
+        return self.claim(self.covariance)
+
+    def claim(self, covariance: Array) -> Array:
+        """Return what is claimed of a covariance (..., 11, 11) of attitude, rate and inertia."""
         if self.status in (Status.ACCEPTED, Status.ACCEPTED_IN_PART):
-            return self.covariance
-        result = self.covariance.copy()
-        result[INERTIA], result[:, INERTIA] = 0.0, 0.0
-        result[INERTIA, INERTIA] = PRIOR_SIGMA**2 * np.eye(5)
+            return covariance
+        result = covariance.copy()
+        result[..., INERTIA, :], result[..., INERTIA] = 0.0, 0.0
+        result[..., INERTIA, INERTIA] = PRIOR_SIGMA**2 * np.eye(5)
         return result
 
     def at(self, times: Array) -> Path:

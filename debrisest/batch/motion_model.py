@@ -4,7 +4,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from debrisest.arrays import Array
+from debrisest.batch.arc import Arc
 from debrisest.batch.motion import Motion
+
+Estimate = Callable[[int, Arc | None], Motion]
+"""From the number of epochs that count, and an arc that may be near, to the motion at them."""
 
 
 class MotionModel(NamedTuple):
@@ -13,6 +17,8 @@ class MotionModel(NamedTuple):
     times: Array
     """Epochs (time,), s."""
     runs: int
-    estimate: Callable[[int], Motion]
-    """From the number of a run in the batch to its motion."""
+    estimate: Callable[[int], Estimate]
+    """Of the number of a run in the batch."""
     error_names: tuple[str, ...]
+    frame_is_given: bool
+    """Whether body axes are the same whichever epochs count."""

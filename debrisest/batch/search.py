@@ -14,7 +14,7 @@ def search(evidence: Evidence, local: Local) -> Growth:
     for arc in starts(local):
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             growth = grow(evidence, arc, local.half)
-        if growth.whole and growth.fit.steady and growth.fit.noise_below:
+        if growth.explains:
             return growth
         if best is None or _rank(growth) > _rank(best):
             best = growth

@@ -14,12 +14,13 @@ from debrisest.batch.lasting_errors import with_lasting_errors
 from debrisest.batch.local_rates import Local, local_rates
 from debrisest.batch.motion import NO_COVARIANCE, Judged, Status
 from debrisest.batch.observability import lost_directions, possible
+from debrisest.batch.other_minima import lowest_minimum
 from debrisest.batch.outliers import without_biased_points
 from debrisest.batch.path import Path, path_of, unknown_path
 from debrisest.batch.search import search
 from debrisest.batch.smoother import Wander, smooth, wander
-from debrisest.batch.steady import turns_steadily
-from debrisest.batch.windows import Growth, widened
+from debrisest.batch.steady import nutates_plainly, turns_steadily
+from debrisest.batch.windows import Growth, refitted, widened
 
 _GATE = 25.0
 _FEWEST_DOF = 30.0  # beyond the unknowns, below which the tests prove nothing
@@ -42,28 +43,50 @@ class Solution(NamedTuple):
 
 
 def solve(
-    evidence: Evidence, times: Array, noise_known: bool, wider: Evidence | None = None
+    evidence: Evidence,
+    times: Array,
+    noise_known: bool,
+    wider: Evidence | None = None,
+    near: Arc | None = None,
 ) -> Solution:
     """Return the motion at ``times (time,)``, s.
 
-    ``wider`` is evidence that only a known motion makes useful; it joins at the end.
+    ``wider`` is evidence that only a known motion makes useful; it joins at the end. Where an arc
+    ``near`` the motion, such as that of fewer data, leads to one that stands the tests, there is
+    no search.
     """
+    if near is not None:
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            growth = refitted(evidence, near)
+        solution = _finished(growth, None, times, noise_known) if growth.explains else None
+        if solution is not None:
+            return solution
     local = local_rates(evidence.times, evidence.seen())
     if local is None:
         return _nothing(evidence, times)
     growth = search(evidence, local)
     if growth.whole and growth.fit.steady and wider is not None:
         growth = widened(growth, wider)
+    solution = _finished(growth, local, times, noise_known)
+    return solution or _any_motion(evidence, local, growth, times, noise_known)
+
+
+def _finished(
+    growth: Growth, local: Local | None, times: Array, noise_known: bool
+) -> Solution | None:
+    """Return the arc, less points that are elsewhere, if it stands the tests."""
     certain = True
     if growth.whole:
         growth, certain = without_biased_points(growth)
     solution = _torque_free(growth, local, times, noise_known)
-    if solution is None:
-        return _any_motion(evidence, local, growth, times, noise_known)
-    return solution if certain else solution._replace(status=Status.MODEL_IN_DOUBT)
+    if solution is None or certain:
+        return solution
+    return solution._replace(status=Status.MODEL_IN_DOUBT)
 
 
-def _torque_free(growth: Growth, local: Local, times: Array, noise_known: bool) -> Solution | None:
+def _torque_free(
+    growth: Growth, local: Local | None, times: Array, noise_known: bool
+) -> Solution | None:
     """Return the arc with its covariance if it stands the tests."""
     fit, evidence = growth.fit, growth.evidence
     if not (growth.whole and fit.steady):
@@ -73,11 +96,16 @@ def _torque_free(growth: Growth, local: Local, times: Array, noise_known: bool) 
     scaled = evidence.scaled(noise)
     found = descend(scaled, growth.found.arc, 10)
     spread = covariance(found.hold, evidence.unknowns_fixed)
+    alone = True
+    if not nutates_plainly(scaled, found.arc, spread):
+        found, alone = lowest_minimum(scaled, found)
+        alone = alone and not turns_steadily(scaled, found)
+        spread = covariance(found.hold, evidence.unknowns_fixed)
     spread = with_curvature(scaled, found.arc, spread)
-    if not possible(found.arc, spread):
+    if alone and not possible(found.arc, spread):
         return None
     status = Status.ACCEPTED_IN_PART if lost_directions(spread) else Status.ACCEPTED
-    if turns_steadily(scaled, found, spread):
+    if not alone:
         status = Status.WITHOUT_INERTIA
     if fit.dof < _FEWEST_DOF:
         status = Status.UNTESTED

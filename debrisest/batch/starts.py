@@ -22,10 +22,16 @@ def starts(local: Local) -> Iterator[Arc]:
     inertia = inertia_start(local)
     for window in best:
         yield _arc(local, window, inertia)
-    for guess in _GUESSES:
-        tensor = np.diag([1.0 + guess[0], 1.0 - guess[0] + guess[1], 1.0 - guess[1]])
+    for guess in inertia_guesses():
         for window in best[:2]:
-            yield _arc(local, window, log_inertia.log_ratios(tensor))
+            yield _arc(local, window, guess)
+
+
+def inertia_guesses() -> Array:
+    """Return log-ratios (guess, 5) of bodies of several shapes."""
+    first, second = _GUESSES.T
+    moments = np.stack([1.0 + first, 1.0 - first + second, 1.0 - second], axis=-1)
+    return log_inertia.log_ratios(moments[..., None] * np.eye(3))
 
 
 def best_windows(local: Local) -> IntArray:

@@ -8,6 +8,7 @@ it lowers the chi-square by more than noise does.
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.batch.arc import Arc
 from debrisest.batch.descent import Descent, Prior, descend
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.path import path_of
@@ -18,14 +19,14 @@ _PLAIN = 50.0  # sigmas by which the rate changes where a nutation is plain to s
 _SPHERE = Prior(np.zeros(5), 1e12 * np.eye(5))
 
 
-def turns_steadily(evidence: Evidence, found: Descent, covariance: Array) -> bool:
-    """Return whether a sphere, which can only spin, explains the data as well.
-
-    Where the rate changes by far more than its sigma there is no need to try.
-    """
+def nutates_plainly(evidence: Evidence, arc: Arc, covariance: Array) -> bool:
+    """Return whether the rate changes by far more than its sigma."""
     stride = -(-len(evidence.times) // _SAMPLES)
-    path = path_of(found.arc, covariance, evidence.times[::stride])
-    if np.any(np.ptp(path.rate, axis=0) > _PLAIN * path.rate_sigma.max(axis=0)):
-        return False
+    path = path_of(arc, covariance, evidence.times[::stride])
+    return bool(np.any(np.ptp(path.rate, axis=0) > _PLAIN * path.rate_sigma.max(axis=0)))
+
+
+def turns_steadily(evidence: Evidence, found: Descent) -> bool:
+    """Return whether a sphere, which can only spin, explains the data as well."""
     sphere = found.arc._replace(log_inertia=np.zeros(5))
     return descend(evidence, sphere, 30, _SPHERE).chi2 - found.chi2 < _GAIN

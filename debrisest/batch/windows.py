@@ -34,6 +34,11 @@ class Growth(NamedTuple):
     whole: bool
     """Whether the last window is the whole span and was not left."""
 
+    @property
+    def explains(self) -> bool:
+        """Whether the arc stands all tests over the whole span."""
+        return self.whole and self.fit.steady and self.fit.noise_below
+
 
 def grow(evidence: Evidence, arc: Arc, half: float, gates: bool = True) -> Growth:
     """Return the fit of the longest window that an arc, true about its epoch, explains."""
@@ -53,6 +58,13 @@ def grow(evidence: Evidence, arc: Arc, half: float, gates: bool = True) -> Growt
             return _at_middle(good)
         arc = found.arc
         low, high = _wider(evidence, found, low, high)
+
+
+def refitted(evidence: Evidence, arc: Arc) -> Growth:
+    """Return the fit of the whole span from an arc that is almost right."""
+    first, last = float(evidence.times[0]), float(evidence.times[-1])
+    found, kept = _fitted(evidence, moved(arc, 0.5 * (first + last)), True)
+    return Growth(found, tested(kept, found.arc), kept, (first, last), True)
 
 
 def widened(growth: Growth, wider: Evidence) -> Growth:

@@ -35,7 +35,7 @@ class InFeatureFrame(ProblemPart):
         """Return the data with ``q_bf`` from the true feature frame, by default the estimate's."""
         return data
 
-    def truth(self, data: Data) -> Array | None:
+    def truth(self, data: Data) -> Array:
         """Return the true states (run, time, 12)."""
         frame = features_frame(data["true_point_b"])[:, None]
         inertia = np.swapaxes(frame, -1, -2) @ data["true_inertia_b"][:, None] @ frame

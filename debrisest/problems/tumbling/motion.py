@@ -14,6 +14,7 @@ from pydantic import model_validator
 from debrisest.arrays import Array, Data
 from debrisest.assessment.statistics import per_dimension
 from debrisest.attitude import quaternion
+from debrisest.batch.arc import Arc
 from debrisest.batch.estimate import (
     estimate_from_attitudes,
     estimate_from_points,
@@ -26,6 +27,7 @@ from debrisest.filters.estimates import Estimates
 from debrisest.problems.tumbling import points_motion as body
 from debrisest.problems.tumbling.feature_frame import InFeatureFrame
 from debrisest.problems.tumbling.gauge import in_true_frame
+from debrisest.problems.tumbling.right_or_wrong import right_or_wrong
 from debrisest.roles import Window
 
 _NEEDS = {"points": "measured_point", "attitudes": "measured_q_if", "rates": "measured_rate_f"}
@@ -61,7 +63,7 @@ class TumblingMotion(InFeatureFrame):
 
     def model(self, data: Data, clock: Clock) -> MotionModel:
         """Return what gives the motion of a run."""
-        estimators: dict[str, Callable[[Data, Array, int], Motion]] = {
+        estimators: dict[str, Callable[..., Motion]] = {
             "points": partial(_from_points, self.geometry == "known"),
             "attitudes": _from_attitudes,
             "rates": _from_rates,
@@ -70,8 +72,9 @@ class TumblingMotion(InFeatureFrame):
         return MotionModel(
             times=clock.times,
             runs=len(data["run"]),
-            estimate=lambda run: estimate(data, clock.times, run),
+            estimate=lambda run: partial(estimate, data, clock.times, run),
             error_names=body.ERROR_NAMES,
+            frame_is_given=not self._frame_is_free,
         )
 
     def unpack(self, filtered: Estimates) -> Data:
@@ -88,42 +91,51 @@ class TumblingMotion(InFeatureFrame):
 
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors in true principal axes, if known; unknown geometry leaves a frame free."""
-        counted = ("accepted", "fit", "lost_directions", "rejected_share")
+        counted = ("accepted", "fit", "lost_directions", "rejected_share", "features_used")
         seen = data["rejected"] + data["observations_used"]
         share = {"rejected": per_dimension(data["rejected"], seen)}
-        return share | {name: data[name] for name in counted} | super().assess(data, scored)
+        said = share | {name: data[name] for name in counted if name in data}
+        if self.measured == "points" and {*self.true_state, "point_noise"} <= data.keys():
+            said |= right_or_wrong(data, self.truth(data), self._frame_is_free)
+        return said | super().assess(data, scored)
 
     def in_true_frame(self, data: Data) -> Data:
         """Return the data with ``q_bf`` from the true feature frame."""
-        free = self.measured == "points" and self.geometry == "unknown"
-        return in_true_frame(data) if free and "true_q_ib" in data else data
+        return in_true_frame(data) if self._frame_is_free and "true_q_ib" in data else data
+
+    @property
+    def _frame_is_free(self) -> bool:
+        return self.measured == "points" and self.geometry == "unknown"
 
 
-def _from_points(known: bool, data: Data, times: Array, run: int) -> Motion:
-    points = data["measured_point"][run]
-    sigma = data["point_sigma"][run] if "point_sigma" in data else None
+def _from_points(
+    known: bool, data: Data, times: Array, run: int, count: int, near: Arc | None
+) -> Motion:
+    points = data["measured_point"][run, :count]
+    sigma = data["point_sigma"][run, :count] if "point_sigma" in data else None
     if sigma is None and "point_noise" in data:
         sigma = np.full(points.shape, data["point_noise"][run])
     given = None if sigma is None or np.isnan(sigma).all() else sigma
     if given is not None and not np.nanmax(given) > 0.0:
         raise ValueError("points without noise weigh infinitely: their noise must be positive")
     model = data["known_point_f"][run] if known else None
-    return estimate_from_points(times, points, given, model)
+    return estimate_from_points(times[:count], points, given, model, near)
 
 
-def _from_attitudes(data: Data, times: Array, run: int) -> Motion:
+def _from_attitudes(data: Data, times: Array, run: int, count: int, near: Arc | None) -> Motion:
+    q = data["measured_q_if"][run, :count]
     if "measured_q_if_covariance" in data:
-        sigma = data["measured_q_if_covariance"][run]
+        sigma = data["measured_q_if_covariance"][run, :count]
     else:
-        sigma = data["q_if_noise"][run]
+        sigma = data["q_if_noise"][run, :count]
     given = None if np.isnan(sigma).all() else sigma
-    return estimate_from_attitudes(times, data["measured_q_if"][run], given)
+    return estimate_from_attitudes(times[:count], q, given, near)
 
 
-def _from_rates(data: Data, times: Array, run: int) -> Motion:
+def _from_rates(data: Data, times: Array, run: int, count: int, near: Arc | None) -> Motion:
     noise = data["rate_noise"][run]
     given = None if np.isnan(noise) else float(noise)
-    return estimate_from_rates(times, data["measured_rate_f"][run], given)
+    return estimate_from_rates(times[:count], data["measured_rate_f"][run, :count], given, near)
 
 
 def _component_sigma(q: Array, turn_sigma: Array) -> Array:

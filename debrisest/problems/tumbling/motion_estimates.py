@@ -11,6 +11,7 @@ from debrisest.batch.arc import INERTIA, RATE, TURN, UNKNOWNS, Arc, course, move
 from debrisest.batch.derived import LOOSEST_AXIS, derived
 from debrisest.batch.motion import Motion
 from debrisest.batch.observability import lost_directions
+from debrisest.batch.online import Stretch
 from debrisest.batch.path import Path
 from debrisest.dynamics.log_inertia import BASIS
 from debrisest.filters.estimates import Estimates
@@ -23,13 +24,14 @@ _FEWEST_POINTS = 2
 
 
 def estimates(
-    motions: Sequence[Motion], times: Array, measured: Array, kept: Sequence[int]
+    runs: Sequence[Sequence[Stretch]], times: Array, measured: Array, kept: Sequence[int]
 ) -> Estimates:
-    """Return the record of all runs that ``measured (run, time, m)``.
+    """Return the record of all runs that ``measured (run, time, m)``, each of some stretches.
 
-    The covariances are those at the epochs ``kept``.
+    The covariances are those at the epochs ``kept``; the figures are those of the last stretch.
     """
-    states, sigmas, covariances = zip(*(_of_run(motion, times, kept) for motion in motions))
+    states, sigmas, covariances = zip(*(_of_run(run, times, kept) for run in runs))
+    motions = [run[-1].motion for run in runs]
     shape = (len(motions), len(times))
     figures = [
         _figures(motion) | _counted(motion, m) | _at_end(motion, times)
@@ -45,18 +47,26 @@ def estimates(
     )
 
 
-def _of_run(motion: Motion, times: Array, kept: Sequence[int]) -> tuple[Array, Array, Array]:
+def _of_run(
+    stretches: Sequence[Stretch], times: Array, kept: Sequence[int]
+) -> tuple[Array, Array, Array]:
     """State (time, 12), sigma (time, 11) and covariances (kept, 11, 11) in plain coordinates."""
-    path = motion.path
-    covariance = _along(motion, path)
-    inertia = np.full(5, np.nan)
-    if motion.arc is not None and motion.status.accepted:
-        inertia = _TO_PLAIN @ motion.arc.log_inertia
-    constant = np.broadcast_to(inertia, (len(times), 5))
-    state = np.concatenate([path.q, path.rate, constant], axis=-1)
+    state = np.full((len(times), UNKNOWNS + 1), np.nan)
+    covariance = np.full((len(times), UNKNOWNS, UNKNOWNS), np.nan)
+    for motion, path in stretches:
+        at = np.searchsorted(times, path.times)
+        state[at], covariance[at] = _states(motion, path), _along(motion, path)
     variance = np.diagonal(covariance, 0, -2, -1)
     sigma = np.sqrt(np.where(variance < 0.0, 0.0, variance))
     return state, sigma, covariance[list(kept)]
+
+
+def _states(motion: Motion, path: Path) -> Array:
+    inertia = np.full(5, np.nan)
+    if motion.arc is not None and motion.status.accepted:
+        inertia = _TO_PLAIN @ motion.arc.log_inertia
+    constant = np.broadcast_to(inertia, (len(path.times), 5))
+    return np.concatenate([path.q, path.rate, constant], axis=-1)
 
 
 def _along(motion: Motion, path: Path) -> Array:
@@ -67,18 +77,9 @@ def _along(motion: Motion, path: Path) -> Array:
         return result
     plain = np.eye(UNKNOWNS)
     plain[INERTIA, INERTIA] = _TO_PLAIN
-    return plain @ _claimed(motion, motion.arc, path.times) @ plain.T
-
-
-def _claimed(motion: Motion, arc: Arc, times: Array) -> Array:
-    """Covariance (time, 11, 11) of the arc at the times: of an inertia not claimed, the prior's.
-
-    Attitude and rate keep the path's, which an inertia that nothing shows does not widen.
-    """
-    by = _transitions(arc, times)
-    result = np.asarray(by @ motion.covariance @ np.swapaxes(by, -1, -2))
-    result[:, INERTIA, INERTIA] = motion.claimed[INERTIA, INERTIA]
-    return result
+    by = _transitions(motion.arc, path.times)
+    claimed = motion.claim(by @ motion.covariance @ np.swapaxes(by, -1, -2))
+    return plain @ claimed @ plain.T
 
 
 def _transitions(arc: Arc, times: Array) -> Array:
@@ -122,7 +123,9 @@ def _counted(motion: Motion, measured: Array) -> Data:
 def _points(motion: Motion) -> Data:
     if not len(motion.points):
         return {}
-    return {"point_f": motion.points, "point_f_sigma": motion.points_sigma}
+    used = np.asarray(float(motion.kept.sum()))
+    points = {"point_f": motion.points, "point_f_sigma": motion.points_sigma}
+    return points | {"features_used": used}
 
 
 def _at_end(motion: Motion, times: Array) -> Data:
@@ -138,7 +141,8 @@ def _at_end(motion: Motion, times: Array) -> Data:
     if motion.arc is None or not motion.status.accepted:
         return {name: np.asarray(value, dtype=np.float64) for name, value in result.items()}
     arc = moved(motion.arc, float(times[-1]))
-    found = derived(arc, _claimed(motion, motion.arc, times[-1:])[0])
+    by = _transitions(motion.arc, times[-1:])[0]
+    found = derived(arc, motion.claim(by @ motion.covariance @ by.T))
     result |= {
         "spin_axis_i": found.spin_axis.value,
         "spin_axis_i_sigma": found.spin_axis.sigma,

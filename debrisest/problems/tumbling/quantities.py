@@ -35,6 +35,11 @@ QUANTITIES = {
     **with_sigmas(_ESTIMATED),
     "q_if_sigma": Quantity(TIME_QUATERNION, "1", "1-sigma of q_if"),
     "accepted": Quantity(RUN, "1", "torque-free motion was tested and holds", "1"),
+    "startable": Quantity(RUN, "1", "six epochs show three points that are not in line", "1"),
+    "accepted_and_right": Quantity(RUN, "1", "accepted, and within five of its own sigmas", "1"),
+    "accepted_and_wrong": Quantity(RUN, "1", "accepted, and not within five of its sigmas", "1"),
+    "missed": Quantity(RUN, "1", "startable, but not accepted and right", "1"),
+    "features_used": Quantity(RUN, "1", "features that belong to the body, where it has them", "1"),
     "lost_directions": Quantity(
         *(RUN, "1", "numbers of the inertia, of five, that the motion does not show", "1"),
         after_figure=" of 5 unobservable",

@@ -1,0 +1,60 @@
+"""Points that are wrong, elsewhere, or not seen to the end."""
+
+import numpy as np
+import pytest
+
+from debrisest.clock import Clock
+from debrisest.draws import Draws
+from debrisest.parts.sensors.feature_points import BiasedFeature, FeaturePoints
+
+RUNS, EPOCHS = 3, 400
+POINTS = 10.0 * np.random.default_rng(1).normal(size=(6, 3))
+
+
+def measured(**keys):
+    truth = {
+        "feature": np.array([f"p{i}" for i in range(6)]),
+        "true_point_b": np.tile(POINTS, (RUNS, 1, 1)),
+        "true_normal_b": np.ones((RUNS, 6, 3)),
+        "true_q_ib": np.tile([1.0, 0.0, 0.0, 0.0], (RUNS, EPOCHS, 1)),
+        "true_position": np.zeros((RUNS, EPOCHS, 3)),
+    }
+    part = FeaturePoints(**{"kind": "feature_points", "noise_m": 1e-3, "visibility": "all"} | keys)
+    draws = Draws(1, "case", list(range(RUNS)))
+    return part.simulate(truth, Clock.regular(EPOCHS, 1.0), draws)
+
+
+def test_wrong_matches_have_their_share_half_of_them_exchanged() -> None:
+    points = measured(wrong_match_share=0.2)["measured_point"]
+    off = np.linalg.norm(points - POINTS, axis=-1)
+    count, spread = off.size, 5.0 / np.sqrt(off.size)
+    assert abs(np.sum(off > 0.1) / count - 0.2) < spread
+    places = np.linalg.norm(points[..., None, :] - POINTS, axis=-1)
+    exchanged = (places.min(axis=-1) < 0.1) & (places.argmin(axis=-1) != np.arange(6))
+    assert abs(np.sum(exchanged) / count - 0.1) < spread
+    shifted = (off > 0.1) & ~exchanged
+    assert off[shifted].min() > 0.9 and places.min(axis=-1)[shifted].max() < 5.1
+
+
+def test_a_biased_feature_is_off_in_one_direction_of_each_run() -> None:
+    points = measured(biased_feature=BiasedFeature(name="p2", by_m=0.2))["measured_point"]
+    off = (points - POINTS).mean(axis=1)
+    sizes = np.linalg.norm(off, axis=-1)
+    assert np.all(np.abs(sizes[:, 2] - 0.2) < 1e-3)
+    assert np.all(np.delete(sizes, 2, axis=1) < 1e-3)
+    assert np.abs(off[0, 2] - off[1, 2]).max() > 0.01
+
+
+def test_a_biased_feature_that_is_none_is_told() -> None:
+    with pytest.raises(ValueError, match="no feature is called p9; there are p0, p1"):
+        measured(biased_feature=BiasedFeature(name="p9", by_m=0.2))
+
+
+def test_noise_and_the_last_epoch_are_drawn_for_each_run() -> None:
+    data = measured(noise_m=[0.01, 0.1], seen_for_s=[100.0, 300.0])
+    last = np.isfinite(data["measured_point"][..., 0, 0]).sum(axis=-1)
+    assert np.all((last > 100) & (last <= 300)) and len(set(last)) == RUNS
+    told = data["point_noise"]
+    assert np.all((told >= 0.01) & (told <= 0.1)) and len(set(told)) == RUNS
+    shown = np.nanstd(data["measured_point"] - POINTS, axis=(1, 2, 3))
+    assert np.all(np.abs(shown / told - 1.0) < 5.0 / np.sqrt(2 * 100 * 18))
