@@ -75,6 +75,7 @@ def _along(motion: Motion, path: Path) -> Array:
     plain = np.eye(UNKNOWNS)
     plain[INERTIA, INERTIA] = _TO_PLAIN
     claimed = motion.claim(by @ motion.covariance @ np.swapaxes(by, -1, -2))
+    claimed[:, TURN, TURN], claimed[:, RATE, RATE] = path.turn_covariance, path.rate_covariance
     return plain @ claimed @ plain.T
 
 
