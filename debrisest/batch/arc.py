@@ -79,9 +79,9 @@ def course(arc: Arc, times: Array) -> Course:
 
 
 def displaced(arc: Arc, error: Array) -> Arc:
-    """Return the arc moved by errors (11)."""
-    q = quaternion.multiply(quaternion.exp(error[TURN]), arc.q)
-    return Arc(arc.epoch, q, arc.rate + error[RATE], arc.log_inertia + error[INERTIA])
+    """Return the arc moved by errors (..., 11)."""
+    q = quaternion.multiply(quaternion.exp(error[..., TURN]), arc.q)
+    return Arc(arc.epoch, q, arc.rate + error[..., RATE], arc.log_inertia + error[..., INERTIA])
 
 
 def moved(arc: Arc, epoch: float) -> Arc:

@@ -5,7 +5,10 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.batch.arc import Arc, course
+from debrisest.attitude import quaternion
+from debrisest.batch.arc import Arc, Course, along, course, displaced
+
+_FOURTH_MOMENT = 3.0  # of a Gaussian: mean square of a square
 
 
 class Path(NamedTuple):
@@ -37,12 +40,31 @@ class Path(NamedTuple):
 
 
 def path_of(arc: Arc, covariance: Array, times: Array) -> Path:
-    """Return torque-free motion at ``times``, with the ``covariance (11, 11)`` of its unknowns."""
+    """Return torque-free motion at ``times``, with the ``covariance (11, 11)`` of its unknowns.
+
+    With the second order of what one sigma along each axis of the covariance does: the size of a
+    rate may be known far better than its direction, and errors then lie on a sphere, not a plane.
+    """
     motion = course(arc, times)
+    linear = (motion.turn_by, motion.rate_by)
     turn, rate = (
-        by @ covariance @ np.swapaxes(by, -1, -2) for by in (motion.turn_by, motion.rate_by)
+        by @ covariance @ np.swapaxes(by, -1, -2) + _FOURTH_MOMENT * bend
+        for by, bend in zip(linear, _bends(arc, covariance, motion, times))
     )
     return Path(times, motion.q, motion.rate, turn, rate)
+
+
+def _bends(arc: Arc, covariance: Array, motion: Course, times: Array) -> tuple[Array, Array]:
+    """Squares (time, 3, 3) of the second order of attitude and rate."""
+    scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
+    values, axes = np.linalg.eigh(covariance / scale[:, None] / scale)
+    sides = (scale[:, None] * axes * np.sqrt(np.maximum(values, 0.0))).T
+    q, rate = along(displaced(arc, np.concatenate([sides, -sides])), times)
+    turn = quaternion.log(quaternion.multiply(q, quaternion.conjugate(motion.q)))
+    count = len(sides)
+    bends = (0.5 * (off[:count] + off[count:]) for off in (turn, rate - motion.rate))
+    of_turn, of_rate = (np.einsum("kti,ktj->tij", bend, bend) for bend in bends)
+    return of_turn, of_rate
 
 
 def unknown_path(times: Array) -> Path:

@@ -79,6 +79,7 @@ def _along(motion: Motion, path: Path) -> Array:
     plain[INERTIA, INERTIA] = _TO_PLAIN
     by = _transitions(motion.arc, path.times)
     claimed = motion.claim(by @ motion.covariance @ np.swapaxes(by, -1, -2))
+    claimed[:, TURN, TURN], claimed[:, RATE, RATE] = path.turn_covariance, path.rate_covariance
     return plain @ claimed @ plain.T
 
 
