@@ -27,6 +27,8 @@ from debrisest.shipped import scenario_path
 from debrisest.show.tables.published import check_published
 from debrisest.show.tables.tabulate import chosen, tabulate, write_tables
 
+_MOST_REASONS = 3
+
 
 def load(
     config: str | Path, /, plugins: Iterable[str | Path] = (), **settings: Any
@@ -66,10 +68,12 @@ def run(
     selection = Selection(runs, cases, estimators, force=force)
     check_selection([scenario], selection)
     check_published(scenario)
-    bring_up_to_date([scenario], Path(out), selection, Machine(jobs, quiet=quiet))
+    failures = bring_up_to_date([scenario], Path(out), selection, Machine(jobs, quiet=quiet))
     rows, _ = tabulate(scenario, Path(out), plan(scenario, Path(out), Selection(runs)))
     if rows.empty and scenario.common.measured is None:
-        raise UserError(f"{scenario.name}: there are no tables, since no step gave a result")
+        why = [f"{name} failed: {reason}" for name, reason in failures.items()]
+        told = f"{scenario.name}: there are no tables, since no step gave a result"
+        raise UserError([*why[:_MOST_REASONS], told])
     if not rows.empty:
         write_tables(scenario, Path(out), rows)
     means = scenario.common.tables.means

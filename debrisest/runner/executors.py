@@ -50,12 +50,17 @@ class WorkerPool(ProcessPoolExecutor):
             process.terminate()
 
 
+def require_guarded(jobs: int) -> None:
+    """End a worker, with a sentence, that imports a script which starts workers itself."""
+    if jobs > 1 and getattr(multiprocessing.current_process(), "_inheriting", False):
+        raise SystemExit(UNGUARDED)
+
+
 @contextmanager
 def executor(jobs: int, address: str | None = None) -> Iterator[tuple[Executor, int]]:
     """Yield an executor and how many steps it computes at a time.
 
-    It is this process, a pool of ``jobs`` spawned ones, or a dask cluster. A worker that imports
-    an unguarded script comes here as well, and ends with a sentence.
+    It is this process, a pool of ``jobs`` spawned ones, or a dask cluster.
     """
     if address is not None:
         from debrisest.runner.cluster import dask_executor
@@ -63,8 +68,6 @@ def executor(jobs: int, address: str | None = None) -> Iterator[tuple[Executor, 
         with dask_executor(address) as cluster:
             yield cluster
     else:
-        if jobs > 1 and getattr(multiprocessing.current_process(), "_inheriting", False):
-            raise SystemExit(UNGUARDED)
         with InProcess() if jobs == 1 else WorkerPool(jobs) as pool:
             yield pool, jobs
 

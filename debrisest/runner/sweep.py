@@ -11,7 +11,7 @@ from debrisest.interrupts import raised
 from debrisest.locked import locked
 from debrisest.results.open import find_results
 from debrisest.runner.execute import execute
-from debrisest.runner.executors import executor
+from debrisest.runner.executors import executor, require_guarded
 from debrisest.runner.plan import Selection, Step, plan
 from debrisest.runner.progress import Progress, progress
 from debrisest.runner.read_back import not_read_back
@@ -31,6 +31,7 @@ def bring_up_to_date(
     scenarios: Sequence[LoadedScenario], out: Path, selection: Selection, machine: Machine
 ) -> dict[str, str]:
     """Run every step that has a reason to; return the runs that gave no result, with reasons."""
+    require_guarded(machine.jobs)
     out = out.absolute() if machine.cluster else out
     try:
         out.mkdir(parents=True, exist_ok=True)

@@ -3,7 +3,7 @@
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from debrisest.arrays import Array, BoolArray, Data
 from debrisest.attitude import quaternion
@@ -21,6 +21,10 @@ class BiasedFeature(Keys):
     by_m: Positive
 
 
+def _value_or_limits(given: object) -> str:
+    return "limits" if isinstance(given, list) else "value"
+
+
 class FeaturePoints(SimulationPart):
     """Coordinates of the visible features relative to the chaser, in inertial axes."""
 
@@ -29,7 +33,10 @@ class FeaturePoints(SimulationPart):
     knows = ("point_noise",)
     measures = ("measured_point",)
     kind: Literal["feature_points"]
-    noise_m: NonNegative | Limits[Positive] = Field(description="one value, or limits of a draw")
+    noise_m: Annotated[
+        Annotated[NonNegative, Tag("value")] | Annotated[Limits[Positive], Tag("limits")],
+        Discriminator(_value_or_limits),
+    ] = Field(description="one value, or limits of a draw")
     visibility: Literal["back_face", "all"] = "back_face"
     wrong_match_share: Annotated[float, Field(ge=0, lt=1)] = 0.0
     biased_feature: BiasedFeature | None = None
