@@ -1,7 +1,5 @@
 """The best arc over all starts."""
 
-import numpy as np
-
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.local_rates import Local
 from debrisest.batch.starts import starts
@@ -12,8 +10,7 @@ def search(evidence: Evidence, local: Local) -> Growth:
     """Return the first arc that explains the whole span, else the one that goes farthest."""
     best: Growth | None = None
     for arc in starts(local):
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            growth = grow(evidence, arc, local.half)
+        growth = grow(evidence, arc, local.half)
         if growth.explains:
             return growth
         if best is None or _rank(growth) > _rank(best):

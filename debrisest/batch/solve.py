@@ -42,6 +42,7 @@ class Solution(NamedTuple):
     wander: Wander | None
 
 
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def solve(
     evidence: Evidence,
     times: Array,
@@ -53,11 +54,10 @@ def solve(
 
     ``wider`` is evidence that only a known motion makes useful; it joins at the end. Where an arc
     ``near`` the motion, such as that of fewer data, leads to one that stands the tests, there is
-    no search.
+    no search. An arc that nothing can follow costs infinitely much, and is left without a warning.
     """
     if near is not None:
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            growth = refitted(evidence, near)
+        growth = refitted(evidence, near)
         solution = _finished(growth, None, times, noise_known) if growth.explains else None
         if solution is not None:
             return solution
