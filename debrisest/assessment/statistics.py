@@ -1,4 +1,4 @@
-"""Statistics of an error over a window and over runs, with bootstrap intervals.
+"""Statistics of an error over a window and over runs.
 
 Each statistic is a reduction over the window, which gives one figure per run, and one over runs.
 ``median`` is that of the per-run RMS, ``p50`` that of the per-run mean of the absolute value; the
@@ -11,9 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
-
-RESAMPLES = 2000
-CONFIDENCE = 0.95
 
 
 class Statistic(NamedTuple):
@@ -92,21 +89,3 @@ def per_run(name: str, values: Array, inside: BoolArray) -> Array:
     """Return one figure per run (run,) of an error (run, time) over a window, or of (run,)."""
     series = values[:, inside] if values.ndim == 2 else values[:, None]
     return STATISTICS[name].per_run(series)
-
-
-def bootstrap(name: str, groups: list[Array], seed: int) -> tuple[float, float, float]:
-    """Return a statistic over runs, averaged over groups, and its confidence interval.
-
-    Each group holds the figures (run,) of one case; runs are resampled within their group, since
-    the cases are fixed and the runs are a sample. NaN where a group is empty.
-    """
-    over_runs = STATISTICS[name].over_runs
-    if not groups or any(len(group) == 0 for group in groups):
-        return (np.nan, np.nan, np.nan)
-    rng = np.random.default_rng(seed)
-    resampled = [
-        over_runs(group[rng.integers(len(group), size=(RESAMPLES, len(group)))]) for group in groups
-    ]
-    tail = (1 - CONFIDENCE) / 2
-    low, high = np.quantile(np.mean(resampled, axis=0), [tail, 1 - tail])
-    return (float(np.mean([over_runs(group) for group in groups])), float(low), float(high))

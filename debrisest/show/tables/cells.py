@@ -1,6 +1,5 @@
 """The cells of a scenario's tables: measured figures beside published values."""
 
-import zlib
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from itertools import product
 from typing import Any
@@ -10,7 +9,7 @@ import pandas as pd
 
 from debrisest.arrays import Array, BoolArray
 from debrisest.assessment.consistency import consistent_interval
-from debrisest.assessment.statistics import bootstrap
+from debrisest.assessment.intervals import with_interval
 from debrisest.results.assessed import SIMULATED, Assessed, Result
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.schema import Table, Tables
@@ -131,8 +130,7 @@ def _measured(
     groups = [_figures(part, key, table, tables) for part in present]
     kept = [figures[keep] for figures, keep, _ in groups]
     free = [degrees[keep] for degrees, (_, keep, _) in zip(freedom, groups)]
-    seed = zlib.crc32("|".join((*key, estimator)).encode())
-    measured, low, high = (_rounded(x) for x in bootstrap(key.statistic, kept, seed))
+    measured, low, high = (_rounded(x) for x in with_interval(key.statistic, kept))
     consistent = [_rounded(x) for x in consistent_interval(key.statistic, free)]
     return {
         "measured": measured,

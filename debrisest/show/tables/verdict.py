@@ -60,7 +60,10 @@ def consistency(measured: float, low: float, high: float, lost: float) -> Verdic
 def interval_meets(
     expected: Verdict, low: float, high: float, published: float, factor: float
 ) -> bool:
-    """Return whether a confidence interval reaches into the band of an expected verdict."""
+    """Return whether a confidence interval reaches into the band of an expected verdict.
+
+    An end that is NaN reaches nowhere: without an interval only the measured figure counts.
+    """
     return {
         Verdict.REPRODUCED: high >= published / factor and low <= published * factor,
         Verdict.BETTER: low < published / factor,
