@@ -1,11 +1,13 @@
 """End sweeps at random moments by SIGKILL, SIGTERM and SIGINT, and tell what is wrong afterwards.
 
-    python scripts/interrupt_at_random.py [TIMES [SEED]]
+    python scripts/interrupt_at_random.py [--kill 30] [--term 30] [--int 30] [--seed 1] [--dask]
 
-Each sweep is ended once, with one job and with two in turn, and then brought to its end: nothing
-may be left running, nobody may see a trace, and the tables must be those of an undisturbed sweep.
+Each sweep is ended once, with one job, with two, and with ``--dask`` on a cluster of its own (extra
+dask), in turn, and then brought to its end: nothing may be left running, nobody may see a trace, no
+temporary file may stay, and tables and data must be those of an undisturbed sweep, to the byte.
 """
 
+import argparse
 import os
 import random
 import signal
@@ -13,40 +15,61 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout, suppress
+from hashlib import sha256
+from io import StringIO
+from itertools import cycle
 from pathlib import Path
+
+from debrisest.cli import app
+from debrisest.results import store
 
 CONFIG = Path(__file__).parent.parent / "tests" / "scenarios" / "small.yaml"
 CODES = {signal.SIGKILL: -9, signal.SIGTERM: 143, signal.SIGINT: 130}
 SENTENCE = "interrupted: finished steps are kept"
 PATIENCE_S = 5.0
+ADDRESS = "tcp://127.0.0.1:18786"
+Machine = Sequence[str]
 
 
-def main(times: int, seed: int) -> int:
+def main(times: dict[signal.Signals, int], seed: int, machines: Sequence[Machine]) -> int:
     """Return how many sweeps were not ended as they should be."""
-    generator, wrong = random.Random(seed), 0
+    generator, all_wrong = random.Random(seed), 0
     with tempfile.TemporaryDirectory() as folder:
-        began = time.monotonic()
-        swept(Path(folder) / "reference", 2).wait()
-        whole = time.monotonic() - began
-        expected = tables(Path(folder) / "reference")
-        for number in CODES:
-            for turn in range(times):
-                out, delay = Path(folder) / f"{number}-{turn}", generator.uniform(0.05, whole)
-                said = ended(out, 1 + turn % 2, number, delay)
-                swept(out, 1).wait()
-                if tables(out) != expected:
-                    said.append("other tables")
+        lasts = {machine: whole(Path(folder) / "-".join(machine), machine) for machine in machines}
+        expected = content(Path(folder) / "-".join(machines[0]))
+        for number, count in times.items():
+            wrong = early = 0
+            for turn, machine in zip(range(count), cycle(machines)):
+                out = Path(folder) / f"{number}-{turn}"
+                delay = generator.uniform(0.02, lasts[machine])
+                finished, said = ended(out, machine, number, delay)
+                go_on(out)
+                said += ["left a temporary file"] * bool(list(out.rglob(".*.tmp")))
+                said += ["other tables or data"] * (content(out) != expected)
                 if said:
-                    print(f"{number.name}, {1 + turn % 2} jobs, after {delay:.3f} s:", *said)
-                wrong += bool(said)
-            print(f"{number.name}: {times} done, {wrong} wrong so far", flush=True)
-    return wrong
+                    print(f"{number.name}, {' '.join(machine)}, after {delay:.3f} s:", *said)
+                wrong, early = wrong + bool(said), early + finished
+            print(f"{number.name}: {count} sweeps, {wrong} wrong, {early} over before", flush=True)
+            all_wrong += wrong
+    return all_wrong
 
 
-def ended(out: Path, jobs: int, number: signal.Signals, delay: float) -> list[str]:
-    """Send a signal to a sweep after a delay; return what is wrong with how it ended."""
+def whole(out: Path, machine: Machine) -> float:
+    """Return how many seconds an undisturbed sweep takes."""
+    began = time.monotonic()
+    if swept(out, machine).wait():
+        raise SystemExit(f"the undisturbed sweep failed: {' '.join(machine)}")
+    return time.monotonic() - began
+
+
+def ended(
+    out: Path, machine: Machine, number: signal.Signals, delay: float
+) -> tuple[bool, list[str]]:
+    """Send a signal to a sweep after a delay; return whether it was over, and what is wrong."""
     mark = f"{os.getpid()}-{out.name}"
-    process = swept(out, jobs, mark)
+    process = swept(out, machine, mark)
     time.sleep(delay)
     finished = process.poll() is not None or (out / "small" / "tables.csv").exists()
     process.send_signal(number)
@@ -55,25 +78,31 @@ def ended(out: Path, jobs: int, number: signal.Signals, delay: float) -> list[st
     if not finished and process.returncode != CODES[number]:
         wrong.append(f"exit code {process.returncode}")
     if not finished and number != signal.SIGKILL and SENTENCE not in told:
-        wrong.append("said nothing")
+        wrong.append(f"did not say so: {told[-200:]!r}")
     end = time.monotonic() + PATIENCE_S
     while left := running(mark):
         if time.monotonic() > end:
-            return [*wrong, f"left running: {left}"]
+            return finished, [*wrong, f"left running: {left}"]
         time.sleep(0.05)
-    return wrong
+    return finished, wrong
 
 
-def swept(out: Path, jobs: int, mark: str = "") -> subprocess.Popen[str]:
+def swept(out: Path, machine: Machine, mark: str = "") -> subprocess.Popen[str]:
     """Start a sweep whose processes can be found by a mark."""
     command = [sys.executable, "-m", "debrisest", "sweep", str(CONFIG), "--out", str(out)]
     return subprocess.Popen(
-        [*command, "--jobs", str(jobs)],
+        [*command, *machine],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE if mark else subprocess.DEVNULL,
         text=True,
         env=os.environ | {"INTERRUPTED_SWEEP": mark},
     )
+
+
+def go_on(out: Path) -> None:
+    """Bring a sweep to its end, in this process."""
+    with redirect_stdout(StringIO()), suppress(SystemExit):
+        app(["sweep", str(CONFIG), "--out", str(out), "--jobs", "1", "--quiet"])
 
 
 def running(mark: str) -> list[str]:
@@ -89,11 +118,48 @@ def running(mark: str) -> list[str]:
     return found
 
 
-def tables(out: Path) -> bytes:
-    """Return the tables of a sweep."""
-    return (out / "small" / "tables.csv").read_bytes()
+def content(out: Path) -> str:
+    """Return a digest of the tables and of all data of a sweep."""
+    told = sha256((out / "small" / "tables.csv").read_bytes())
+    for path in sorted(out.rglob("*.h5")):
+        told.update(str(path.relative_to(out)).encode())
+        for name, values in sorted(store.read(path).items()):
+            told.update(name.encode() + values.tobytes())
+    return told.hexdigest()
+
+
+@contextmanager
+def cluster() -> Iterator[None]:
+    """Run a dask scheduler and a worker."""
+    port = ADDRESS.rpartition(":")[2]
+    commands = (
+        ("scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard"),
+        ("worker", ADDRESS, "--nworkers", "1", "--nthreads", "1", "--no-dashboard"),
+    )
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    started = [
+        subprocess.Popen([sys.executable, "-m", "dask", *each], **quiet) for each in commands
+    ]
+    try:
+        yield
+    finally:
+        for process in reversed(started):
+            process.terminate()
+            process.wait()
 
 
 if __name__ == "__main__":
-    times, seed = ([int(text) for text in sys.argv[1:]] + [30, 1][len(sys.argv) - 1 :])[:2]
-    sys.exit(min(main(times, seed), 1))
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    for name in ("kill", "term", "int"):
+        parser.add_argument(f"--{name}", type=int, default=30, metavar="TIMES")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--dask", action="store_true", help="on a cluster too")
+    asked = parser.parse_args()
+    counts = {number: getattr(asked, number.name[3:].lower()) for number in CODES}
+    local = (("--jobs", "1"), ("--jobs", "2"))
+    if asked.dask:
+        with cluster():
+            failed = main(counts, asked.seed, (*local, ("--executor", f"dask:{ADDRESS}")))
+    else:
+        failed = main(counts, asked.seed, local)
+    sys.exit(min(failed, 1))

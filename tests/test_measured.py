@@ -14,6 +14,7 @@ from debrisest.results import store
 from debrisest.roles import SimulationPart
 from debrisest.scenario.document import parse
 from debrisest.scenario.load import LoadedScenario, load_scenario
+from debrisest.scenario.resolved import resolved
 
 SIMULATED = [part for parts in CATALOG.values() for part in parts]
 TOLD = {
@@ -145,7 +146,7 @@ def test_the_data_tell_runs_and_length(tumbling: Path) -> None:
     case = loaded(tumbling).cases["nominal"]
     assert (case.scenario.runs, case.scenario.duration_s) == (2, 30.0)
     assert (case.runs(None), case.runs(1), case.runs(9)) == (2, 1, 2)
-    assert "duration_s" not in yaml.safe_load(case.as_yaml())
+    assert "duration_s" not in yaml.safe_load(resolved(case))
 
 
 def test_both_measured_and_simulated_is_a_mistake(tumbling: Path) -> None:

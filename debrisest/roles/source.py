@@ -1,8 +1,9 @@
 """Where data come from: parts that simulate them, and parts that read them from files."""
 
 from abc import abstractmethod
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from debrisest.arrays import Data
 from debrisest.clock import Clock
@@ -48,6 +49,17 @@ class SourcePart(Part):
 
     role = "measured"
 
+    @property
+    def files(self) -> list[str]:
+        """Return all files, and folders of files, that this part reads, as its keys have them."""
+        return []
+
+    def keys_with(self, path_of: Callable[[str], str]) -> dict[str, Any]:
+        """Return the keys that are set, with another path in the place of each file's."""
+        keys = self.model_dump(mode="json", exclude_none=True)
+        placed = {key: _replaced(value, self.files, path_of) for key, value in keys.items()}
+        return placed | {"kind": keys["kind"]}
+
     @abstractmethod
     def read(self, folder: Path) -> Data:
         """Return what is known and measured, of all runs, with ``run`` and ``time_s``.
@@ -58,3 +70,9 @@ class SourcePart(Part):
     @abstractmethod
     def digest(self, folder: Path) -> str:
         """Return a checksum of what the files hold, by which a change is noticed."""
+
+
+def _replaced(value: Any, files: Sequence[str], path_of: Callable[[str], str]) -> Any:
+    if isinstance(value, list):
+        return [_replaced(one, files, path_of) for one in value]
+    return path_of(value) if isinstance(value, str) and value in files else value

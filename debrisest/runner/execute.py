@@ -16,6 +16,7 @@ from debrisest.runner.plan import Step
 from debrisest.runner.schedule import Schedule
 from debrisest.runner.stages.isolate import isolate
 from debrisest.runner.stages.pipeline import STAGES
+from debrisest.scenario.resolved import resolved
 from debrisest.vocabulary import VOCABULARY
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
@@ -123,7 +124,7 @@ def _attributes(step: Step) -> dict[str, Any]:
     return step.attributes | {
         "runs": step.runs,
         "inputs": json.dumps(step.inputs),
-        "scenario": step.case.as_yaml(),
+        "scenario": resolved(step.case),
         "plugins": json.dumps({plugin.path: plugin.digest for plugin in step.case.plugins}),
         "seed": step.case.scenario.seed,
     }

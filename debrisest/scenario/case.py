@@ -6,13 +6,12 @@ from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
-import yaml
 
 from debrisest.arrays import Data, IntArray
 from debrisest.clock import Clock
 from debrisest.plugins.load import Plugin, load_plugins
 from debrisest.roles import SourcePart
-from debrisest.scenario.schema import TOLD_BY_DATA, Scenario, scenario_model
+from debrisest.scenario.schema import Scenario, scenario_model
 from debrisest.vocabulary import has_runs
 
 
@@ -78,9 +77,3 @@ class Case:
 
     def __getstate__(self) -> dict[str, Any]:
         return {key: v for key, v in self.__dict__.items() if key not in ("scenario", "measured")}
-
-    def as_yaml(self) -> str:
-        """Return the resolved scenario as YAML."""
-        told = TOLD_BY_DATA if self.source else ()
-        resolved = self.scenario.model_dump(mode="json", exclude=set(told))
-        return yaml.safe_dump(resolved, sort_keys=False)

@@ -60,11 +60,15 @@ def file_problems(cases: Mapping[str, Case]) -> Found:
     refused = (found for case in cases.values() for found in _parts_that_refuse(case))
     yield from dict.fromkeys(refused)
     for index, table in enumerate(first.tables.layout):
-        path = ("tables", "layout", index)
-        if table.stage == "simulate":
-            yield from _not_simulated((*path, "quantities"), table, cases)
-        elif table.stage == "filter":
-            yield from not_kept((*path, "windows"), table, cases)
+        yield from table_problems(("tables", "layout", index), table, cases)
+
+
+def table_problems(path: KeyPath, table: Table, cases: Mapping[str, Case]) -> Found:
+    """Yield what a table shows and no case has."""
+    if table.stage == "simulate":
+        yield from _not_simulated((*path, "quantities"), table, cases)
+    elif table.stage == "filter":
+        yield from not_kept((*path, "windows"), table, cases)
 
 
 def _parts_that_refuse(case: Case) -> Found:

@@ -57,15 +57,25 @@ class _Loader(yaml.SafeLoader):
     yaml_implicit_resolvers: dict[Any, Any] = {}
 
 
+class _Dumper(yaml.SafeDumper):
+    """Quotes each text that would be read as something else."""
+
+
 for _tag, _pattern, _first in (
     ("bool", r"true|false", "tf"),
     ("null", r"null|~|", ["n", "~", ""]),
     ("int", r"[-+]?(0|[1-9][0-9]*)", "-+0123456789"),
     ("float", r"[-+]?([0-9]+\.[0-9]*|\.[0-9]+|[0-9]+)([eE][-+]?[0-9]+)?", "-+.0123456789"),
 ):
-    _Loader.add_implicit_resolver(
-        f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), list(_first)
-    )
+    for _either in (_Loader, _Dumper):
+        _either.add_implicit_resolver(
+            f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), list(_first)
+        )
+
+
+def text_of(value: dict[str, Any]) -> str:
+    """Return plain data as the YAML text of which ``parse`` makes them again."""
+    return yaml.dump(value, Dumper=_Dumper, sort_keys=False, allow_unicode=True)
 
 
 def parse(text: str, source: str) -> tuple[Document, list[Problem]]:
@@ -100,7 +110,7 @@ def merge(base: Document, over: Document) -> Document:
     A mapping of another ``kind`` replaces the base's, since the keys of a kind are its own.
     """
     places = {path: place for path, place in over.places.items() if path}
-    return Document(_merge_values(base.value, over.value), base.places | places)
+    return Document(merge_values(base.value, over.value), base.places | places)
 
 
 def sub_document(document: Document, path: KeyPath) -> Document:
@@ -113,12 +123,13 @@ def sub_document(document: Document, path: KeyPath) -> Document:
     return Document(value if isinstance(value, dict) else {}, places)
 
 
-def _merge_values(base: Any, over: Any) -> Any:
+def merge_values(base: Any, over: Any) -> Any:
+    """Return plain data with others laid on them, as ``merge`` does."""
     if not (isinstance(base, dict) and isinstance(over, dict)):
         return over
     if "kind" in over and over["kind"] != base.get("kind", over["kind"]):
         return over
-    return base | {key: _merge_values(base.get(key), value) for key, value in over.items()}
+    return base | {key: merge_values(base.get(key), value) for key, value in over.items()}
 
 
 @dataclass

@@ -16,6 +16,7 @@ from debrisest.roles import Part
 from debrisest.runner.plan import Selection, plan
 from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.load import LoadedScenario, load_scenario
+from debrisest.scenario.resolved import resolved
 from debrisest.show.tables.tabulate import tabulate
 from debrisest.vocabulary import VOCABULARY
 
@@ -203,3 +204,16 @@ def test_every_problem_is_among_what_is_valid(valid: dict[int, LoadedScenario]) 
     estimators = [one for each in valid.values() for one in each.common.estimators.values()]
     found = {kind_of(type(one.problem)) for one in estimators if one.problem is not None}
     assert found >= KEYS.keys() & {kind_of(part) for part in CATALOG["problem"]}
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_what_is_stored_of_a_case_is_the_same_case(
+    valid: dict[int, LoadedScenario], seed: int, tmp_path: Path
+) -> None:
+    if seed not in valid:
+        pytest.skip("refused before it runs")
+    (case,) = valid[seed].cases.values()
+    (tmp_path / valid[seed].path.name).write_text(resolved(case))
+    again = load_scenario(tmp_path / valid[seed].path.name)
+    steps = [plan(one, tmp_path, Selection()) for one in (valid[seed], again)]
+    assert [step.key for step in steps[0]] == [step.key for step in steps[1]]

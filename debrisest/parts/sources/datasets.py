@@ -24,6 +24,11 @@ class Datasets(SourcePart):
     kind: Literal["datasets"]
     file: str
 
+    @property
+    def files(self) -> list[str]:
+        """Return the file."""
+        return [self.file]
+
     def read(self, folder: Path) -> Data:
         """Return the datasets of the file; UserError if it is not whole or lacks the essential."""
         path = folder / self.file

@@ -46,7 +46,7 @@ class TumblingMotion(InFeatureFrame):
 
     @model_validator(mode="after")
     def _geometry_of_points(self) -> "TumblingMotion":
-        if self.measured != "points" and "geometry" in self.model_fields_set:
+        if self.measured != "points" and self.geometry != "known":
             raise ValueError("geometry is that of points; leave it out")
         return self
 

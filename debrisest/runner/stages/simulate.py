@@ -1,5 +1,6 @@
 """Simulate: known and measured data of a case, part by part, with their truth; or from files."""
 
+from pathlib import Path
 from typing import Any
 
 from debrisest.arrays import Data
@@ -15,7 +16,8 @@ def inputs(case: Case, _: str) -> dict[str, Any]:
     scenario = case.scenario
     parts = {name: part.fingerprint() for name, part in scenario.simulation.items()}
     if case.source:
-        source = case.source.fingerprint() | {"digest": case.source.digest(case.folder)}
+        names = case.source.keys_with(lambda name: Path(name).name)
+        source = case.source.fingerprint() | names | {"digest": case.source.digest(case.folder)}
         return {"version": VERSION, "measured": source, **parts}
     told = scenario.model_dump(mode="json", include={"seed", "duration_s", "step_s"})
     return {"version": VERSION, "case": case.name, **told, **parts}
