@@ -14,7 +14,7 @@ from debrisest.parts.sensors.feature_points import FeaturePoints
 from debrisest.parts.starts.first_samples import FirstSamples
 from debrisest.problems.tumbling.attitude import TumblingAttitude
 from debrisest.results import store
-from debrisest.runner.execute import _attributes
+from debrisest.runner.compute import _attributes
 from debrisest.runner.plan import Selection, plan
 from debrisest.scenario.load import load_scenario
 

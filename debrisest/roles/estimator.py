@@ -125,6 +125,8 @@ class FilterPart(Part):
     """The kind of model that it takes."""
     needs_truth: ClassVar[bool] = False
     """Whether it is linearised at the truth, as bounds are."""
+    runs_together: ClassVar[int] = 20
+    """How many runs it computes fastest in one call, as measured; no result depends on it."""
     makes_start: ClassVar[bool] = False
     """Whether it begins with the measurements alone, so that an estimator has no start."""
 

@@ -28,6 +28,17 @@ class Step(Wanted):
     case: Case
     upstream: tuple["Step", ...]
 
+    @property
+    def kin(self) -> tuple[str, ...]:
+        """Return what steps have in common that differ in their runs alone."""
+        return self.address[:-1]
+
+    @property
+    def together(self) -> int:
+        """Return how many of them are best computed in one call."""
+        runs = STAGES[self.address.stage].runs_together(self.case, self.address.estimator)
+        return max(1, runs // RUNS_PER_FILE)
+
 
 @dataclass(frozen=True)
 class Selection:
@@ -56,9 +67,12 @@ def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step
         wanted_of = selection.estimators or case.estimators
         estimators = [one for one in case.estimators if one in wanted_of]
         wanted = case.runs(selection.runs)
-        for first in range(0, wanted, RUNS_PER_FILE):
-            chunk = _Chunk(case, out, first, min(RUNS_PER_FILE, wanted - first), selection)
-            steps += chunk.steps(estimators)
+        chunks = [
+            _Chunk(case, out, first, min(RUNS_PER_FILE, wanted - first), selection)
+            for first in range(0, wanted, RUNS_PER_FILE)
+        ]
+        by_stage = zip(*(chunk.steps(estimators) for chunk in chunks), strict=True)
+        steps += [step for stage in by_stage for step in stage]
     return steps
 
 

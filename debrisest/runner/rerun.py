@@ -14,7 +14,7 @@ from debrisest.plugins.load import Plugin
 from debrisest.results import store
 from debrisest.results.address import Address
 from debrisest.results.status import out_of_date
-from debrisest.runner.execute import run_step
+from debrisest.runner.compute import compute
 from debrisest.runner.plan import Selection, Step, plan
 from debrisest.scenario.load import load_scenario
 
@@ -45,7 +45,7 @@ def rerun(path: Path, plugins: tuple[Plugin, ...] = ()) -> Rerun:
     with tempfile.TemporaryDirectory() as folder:
         steps = _steps(path, attributes, Path(folder), plugins)
         for step in steps:
-            run_step(step)
+            compute([step])
         since, _ = out_of_date(steps[-1], store.inspect(path))
         before, now = store.read(path), store.read(steps[-1].path)
     return Rerun(steps[-1].name, len(now), since, list(_differences(before, now)))

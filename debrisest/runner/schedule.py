@@ -1,6 +1,6 @@
 """Which step comes next: in their order, each after those that it reads."""
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from heapq import heappop, heappush
 
 from debrisest.runner.plan import Step
@@ -9,8 +9,8 @@ from debrisest.runner.plan import Step
 class Schedule:
     """Steps that are due; one is ready when all that are due before it are done."""
 
-    def __init__(self, steps: Iterable[Step]) -> None:
-        self._steps = list(steps)
+    def __init__(self, steps: Iterable[Step], width: int = 1) -> None:
+        self._steps, self._width = list(steps), width
         number = {step.path: index for index, step in enumerate(self._steps)}
         before = [
             [number[up.path] for up in step.upstream if up.path in number] for step in self._steps
@@ -20,21 +20,41 @@ class Schedule:
         for index, needed in enumerate(before):
             for one in needed:
                 self._after[one].append(index)
-        self._ready = [index for index, missing in enumerate(self._missing) if not missing]
+        self._alike: dict[Hashable, list[int]] = {}
+        self._ready: list[int] = []
+        self._taken: set[int] = set()
         self._number = number
+        for index, missing in enumerate(self._missing):
+            if not missing:
+                self._add(index)
 
-    def take(self, most: int) -> list[Step]:
-        """Return the next steps that are ready, no more than so many."""
-        count = max(min(most, len(self._ready)), 0)
-        return [self._steps[heappop(self._ready)] for _ in range(count)]
+    def take(self) -> list[Step]:
+        """Return the next step that is ready, with others like it; nothing where none is ready.
+
+        Never more than would leave less for the other workers than for this one.
+        """
+        while self._ready and self._ready[0] in self._taken:
+            self._taken.remove(heappop(self._ready))
+        if not self._ready:
+            return []
+        first = self._steps[self._ready[0]]
+        alike = self._alike[first.kin]
+        share = -(-(len(self._ready) - len(self._taken)) // self._width)
+        chosen = [heappop(alike) for _ in range(min(first.together, share, len(alike)))]
+        self._taken.update(chosen)
+        return [self._steps[index] for index in chosen]
+
+    def _add(self, index: int) -> None:
+        heappush(self._ready, index)
+        heappush(self._alike.setdefault(self._steps[index].kin, []), index)
 
     def done(self, step: Step) -> None:
         """Note that a step wrote its file; one that did not keeps what needs it from running."""
         for index in self._after[self._number[step.path]]:
             self._missing[index] -= 1
             if not self._missing[index]:
-                heappush(self._ready, index)
+                self._add(index)
 
     def stop(self) -> None:
         """Let no further step be ready."""
-        self._ready, self._after = [], [[] for _ in self._steps]
+        self._ready, self._taken, self._after = [], set(), [[] for _ in self._steps]

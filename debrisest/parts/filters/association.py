@@ -20,6 +20,7 @@ class _Validating(FilterPart):
 
     version = 2
     takes = "scan_model"
+    runs_together = 200
     gate: Positive = 9.21
     detection_probability: Probability = 0.99
     gate_probability: Probability | None = None
@@ -91,6 +92,7 @@ class KnownAssociation(FilterPart):
     """The extended Kalman filter that is handed the target's own detections."""
 
     takes = "scan_model"
+    runs_together = 200
     kind: Literal["known_association"]
     keep_s: KeptTimes = []
 

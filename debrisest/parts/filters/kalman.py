@@ -27,6 +27,7 @@ class Unscented(FilterPart):
     """The unscented Kalman filter; on a linear model the Kalman filter, unless not redrawn."""
 
     takes = "model"
+    runs_together = 100
     kind: Literal["unscented"]
     alpha: Positive = 1.0
     beta: float = 2.0
@@ -52,6 +53,7 @@ class Extended(FilterPart):
     """The extended Kalman filter, or with more than one iteration the iterated one."""
 
     takes = "model"
+    runs_together = 100
     kind: Literal["extended"]
     iterations: Annotated[int, Field(ge=1)] = 1
     tolerance: Positive = 1e-2

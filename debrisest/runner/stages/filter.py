@@ -23,6 +23,13 @@ def inputs(case: Case, estimator: str) -> dict[str, Any]:
     }
 
 
+def runs_together(case: Case, estimator: str) -> int:
+    """Return how many runs the filter computes fastest in one call."""
+    algorithm = case.scenario.estimators[estimator].filter
+    assert algorithm is not None
+    return algorithm.runs_together
+
+
 def run(case: Case, estimator: str, data: Data) -> Data:
     """Return the estimates over all epochs, and what the filter says of itself."""
     chosen, clock = case.scenario.estimators[estimator], Clock(data["time_s"])

@@ -9,17 +9,18 @@ from debrisest.scenario.case import Case
 
 
 class Stage(NamedTuple):
-    """A stage: what its result depends on, and how it is computed."""
+    """A stage: what its result depends on, how it is computed, and how many runs at once."""
 
     name: str
     inputs: Callable[[Case, str], dict[str, Any]]
     run: Callable[[Case, str, Data], Data]
+    runs_together: Callable[[Case, str], int] = lambda case, estimator: 1
 
 
 STAGES = {
     "simulate": Stage("simulate", simulate.inputs, simulate.run),
     "recover": Stage("recover", recover.inputs, recover.run),
-    "filter": Stage("filter", filter.inputs, filter.run),
+    "filter": Stage("filter", filter.inputs, filter.run, filter.runs_together),
     "assess": Stage("assess", assess.inputs, assess.run),
 }
 
