@@ -30,7 +30,7 @@ from debrisest.revision import commit
 from debrisest.vocabulary import VOCABULARY
 
 SCHEMA_VERSION = 4
-_BROKEN = (ValueError, OSError, RuntimeError, KeyError)
+_BROKEN = (ValueError, OSError, RuntimeError, KeyError, TypeError, AttributeError)
 """What reading an HDF5 file raises that is not as it should be."""
 
 
@@ -73,11 +73,19 @@ def write(
         temporary.write_bytes(content)
 
 
-def inspect(path: Path, numbers: bool = True) -> Checkpoint:
-    """Return what a path holds; numbers are verified too if asked for."""
-    found, image = _look(path, numbers)
+class Depth(Enum):
+    """How far a file is looked into; reading its data verifies all of it."""
+
+    LABEL = "its label and its length"
+    BYTES = "the digest of all its bytes too"
+    DATASETS = "each of its datasets too"
+
+
+def inspect(path: Path, depth: Depth = Depth.DATASETS) -> Checkpoint:
+    """Return what a path holds, verified as far as is asked for."""
+    found, image = _look(path, depth is not Depth.LABEL)
     try:
-        if image:
+        if image and depth is Depth.DATASETS:
             check(image, found.attributes)
     except _BROKEN:
         return Checkpoint(Condition.DAMAGED, found.attributes)
@@ -118,7 +126,8 @@ def _whole(path: Path, expected: Mapping[str, Any]) -> Iterator[tuple[Any, dict[
         with opened(image) as file:
             yield file, attributes
     except _BROKEN:
-        raise UserError(_told(path, Condition.DAMAGED)) from None
+        said = "its datasets are not those that a step writes; delete it, and a sweep computes it"
+        raise UserError(f"{path} is {Condition.DAMAGED.value}: {said} again") from None
 
 
 def fits(attributes: Mapping[str, Any], expected: Mapping[str, Any]) -> bool:
