@@ -1,12 +1,17 @@
 """Files that are there and whole, or not at all."""
 
-import fcntl
+import errno
 import os
 import secrets
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # on Windows
+    fcntl = None  # type: ignore[assignment]
 
 
 @contextmanager
@@ -44,6 +49,13 @@ def remove_leftovers(folder: Path) -> None:
                 _remove_unlocked(path)
 
 
+def lock(descriptor: int, wait: bool = False) -> None:
+    """Lock an open file; raise BlockingIOError where another process has, OSError without locks."""
+    if fcntl is None:
+        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
+    fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB * (not wait))
+
+
 @contextmanager
 def _temporary(folder: Path) -> Iterator[Path]:
     """Yield a new file that is locked, and removed if it is still there in the end."""
@@ -61,7 +73,7 @@ def _locked_file(folder: Path) -> tuple[Path, int]:
         path = folder / f".{secrets.token_hex(6)}.{socket.gethostname()}.tmp"
         descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
         with suppress(OSError):  # of a file system without locks
-            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            lock(descriptor, wait=True)
         if os.fstat(descriptor).st_nlink:  # else it was taken for a leftover before it was locked
             return path, descriptor
         os.close(descriptor)
@@ -71,13 +83,15 @@ def _remove_unlocked(path: Path) -> None:
     """Remove a file, or raise OSError where a process holds it or locks cannot tell."""
     descriptor = os.open(path, os.O_WRONLY)
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        lock(descriptor)
         path.unlink(missing_ok=True)
     finally:
         os.close(descriptor)
 
 
 def _synchronise(path: Path) -> None:
+    if os.name == "nt":  # folders cannot be opened there, nor files be synchronised by reading
+        return
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -20,6 +20,7 @@ import h5py
 import numpy as np
 
 from debrisest.cli import app
+from debrisest.results.sealed import read_image, read_label, sealed
 
 CONFIG = Path(__file__).parent.parent / "tests" / "scenarios" / "small.yaml"
 PAGE, LIMIT_S = 4096, 2
@@ -36,6 +37,7 @@ def damages(
         yield "bit", _flipping(int(rng.integers(size)), 1 << int(rng.integers(8)))
         yield "truncated", _truncating(int(rng.integers(size)))
         yield "structure", _editing(rng)
+        yield "structure under a seal", _resealing(rng)
     for start in range(0, size, page):
         yield "page of zeros", _overwriting(start, bytes(min(page, size - start)))
         yield "page of noise", _overwriting(start, rng.bytes(min(page, size - start)))
@@ -67,12 +69,35 @@ def _editing(rng: np.random.Generator) -> Damage:
     return damage
 
 
+def _resealing(rng: np.random.Generator) -> Damage:
+    """Edit a file's datasets or attributes, and seal it again as if it had been written so."""
+
+    def damage(path: Path) -> None:
+        with path.open("rb") as file:
+            label = read_label(file)
+            assert label is not None
+            image, attributes = io.BytesIO(read_image(file, label) or b""), dict(label.attributes)
+        if rng.random() < 0.5:
+            with h5py.File(image, "r+") as opened:
+                edit = STRUCTURE[int(rng.integers(len(STRUCTURE)))]
+                edit(opened, str(rng.choice(list(opened))), "format")
+        else:
+            key = str(rng.choice(list(attributes)))
+            value = (None, 7.5, "other", "", [], {}, -1, True)[int(rng.integers(8))]
+            attributes |= {key: value}
+            if value is None:
+                del attributes[key]
+        path.write_bytes(sealed(image.getvalue(), attributes))
+
+    return damage
+
+
 def _replace(file: Any, name: str, value: Any) -> None:
     del file[name]
     file[name] = value
 
 
-EDITS: list[Callable[[Any, str, str], object]] = [
+STRUCTURE: list[Callable[[Any, str, str], object]] = [
     lambda file, name, _: file.pop(name),
     lambda file, name, _: file.move(name, f"{name}_moved"),
     lambda file, name, _: _replace(file, name, np.zeros(3)),
@@ -80,8 +105,16 @@ EDITS: list[Callable[[Any, str, str], object]] = [
     lambda file, name, _: _replace(file, name, h5py.ExternalLink("other.h5", name)),
     lambda file, name, _: _replace(file, name, h5py.SoftLink("/run")),
     lambda file, name, _: file[name].attrs.update({"units": "km"}),
-    lambda file, name, _: file[name].write_direct(np.ones(file[name].shape)),
+    lambda file, name, _: file[name].attrs.update({"units": np.arange(3)}),
+    lambda file, name, _: file[name].attrs.pop("units"),
+    lambda file, name, _: _replace(file, name, h5py.Empty("f8")),
+    lambda file, name, _: _replace(file, name, file[name][:1]),
     lambda file, name, _: file.create_group("group"),
+]
+"""Edits of the structure that no seal hides."""
+EDITS = [
+    *STRUCTURE,
+    lambda file, name, _: file[name].write_direct(np.ones(file[name].shape)),
     lambda file, _, key: file.attrs.pop(key),
     lambda file, _, key: file.attrs.update({key: 7.5}),
     lambda file, _, key: file.attrs.update({key: "other"}),

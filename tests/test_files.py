@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from debrisest import files
 from debrisest.errors import UserError
 from debrisest.files import remove_leftovers, replacing
 from debrisest.locked import locked
@@ -160,3 +161,15 @@ def test_a_sweep_removes_leftovers(swept: Path, small: Path, sweep: Callable) ->
     left.write_bytes(b"half")
     assert sweep(small, swept).exit_code == 0
     assert not left.exists()
+
+
+def test_without_locks_files_are_whole_and_none_is_taken_for_a_leftover(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on Windows."""
+    monkeypatch.setattr(files, "fcntl", None)
+    with locked(tmp_path), files.replacing(tmp_path / "a") as temporary:
+        temporary.write_text("whole")
+        files.remove_leftovers(tmp_path)
+        assert temporary.exists()
+    assert {path.name for path in tmp_path.iterdir()} - {".lock"} == {"a"}

@@ -125,6 +125,14 @@ def test_streams_that_lead_nowhere_stop_no_sweep(
     assert len(list((tmp_path / "results").rglob("*.h5"))) == 4
 
 
+@pytest.mark.parametrize("asked", ["--help", "rerun --help", "--version"])
+@pytest.mark.parametrize("where", [">/dev/full", "1>&-", ">/dev/full 2>&-"])
+def test_help_that_nobody_hears_is_no_trace(asked: str, where: str, shell: Callable) -> None:
+    done = shell(f"$debrisest {asked} {where}")
+    assert done.returncode in (0, 2)
+    assert done.stderr in ("", "standard output: No space left on device\n")
+
+
 def test_plots_are_drawn_whoever_listens(tmp_path: Path, reference: Path, shell: Callable) -> None:
     shutil.copytree(reference, tmp_path / "results")
     shell("$debrisest plot small.yaml --case slow --estimator wahba | true")

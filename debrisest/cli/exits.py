@@ -14,17 +14,21 @@ from debrisest.interrupts import SENTENCE
 class Commands(TyperGroup):
     """The commands; whatever stops one is told in sentences, without a trace."""
 
+    def main(self, *arguments: Any, **options: Any) -> Any:
+        """Read the arguments, print help or run a command, and end."""
+        with steady():
+            try:
+                try:
+                    return super().main(*arguments, **options)
+                finally:
+                    sys.stdout.flush()
+            except OSError as error:
+                _stop(2, _sentence(error))
+
     def invoke(self, ctx: Any) -> Any:
         """Run a command."""
-        with steady():
-            return self._invoke(ctx)
-
-    def _invoke(self, ctx: Any) -> Any:
         try:
-            try:
-                return super().invoke(ctx)
-            finally:
-                sys.stdout.flush()
+            return super().invoke(ctx)
         except UserError as error:
             _stop(2, *error.problems)
         except OSError as error:

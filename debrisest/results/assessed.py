@@ -81,18 +81,22 @@ Assessed: TypeAlias = Mapping[tuple[str, str], Result]
 """Results by case and estimator."""
 
 
-def assessed(results: Results, simulated: Collection[str] = ()) -> dict[tuple[str, str], Result]:
-    """Return what was assessed, by case and estimator.
+def assessed(
+    results: Results, simulated: Collection[str] = (), names: Collection[str] = VOCABULARY
+) -> dict[tuple[str, str], Result]:
+    """Return what was assessed of the named quantities, by case and estimator.
 
     The datasets ``simulated`` of the simulations come under the estimator SIMULATED.
     """
+    laws = (VOCABULARY[name].chi_square for name in names)
+    wanted = {*_OF_FILES, *names, *(law.freedom for law in laws if law is not None)}
     found: dict[tuple[str, str], Result] = {}
     for case in results.cases:
         if simulated and results.stages(case):
             found[case, SIMULATED] = _result(results.load(case, names={*_OF_FILES, *simulated}))
         for estimator in results.estimators(case):
             if "assess" in results.stages(case, estimator):
-                found[case, estimator] = _result(results.load(case, estimator, "assess"))
+                found[case, estimator] = _result(results.load(case, estimator, "assess", wanted))
     return found
 
 

@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 from debrisest.arrays import Data
+from debrisest.results.told import require_as_told
 from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, has_runs
 
 _NO_COORDINATE = "This is a netCDF dimension but not a netCDF variable."
@@ -34,24 +35,30 @@ def opened(image: bytes) -> Any:
     return h5py.File(BytesIO(image), "r")
 
 
-def check(image: bytes) -> None:
-    """Raise ValueError for a dataset that is not as the vocabulary has it, or lies elsewhere."""
+def check(image: bytes, attributes: Mapping[str, Any]) -> None:
+    """Raise ValueError for a dataset that is not as the vocabulary and the attributes have it."""
     with opened(image) as file:
         for name in file:
             _dataset(file, name)
+        _datasets(file, attributes, VOCABULARY)
 
 
-def data_of(file: Any, names: Container[str], first: int = 0, end: int | None = None) -> Data:
+def data_of(
+    file: Any,
+    attributes: Mapping[str, Any],
+    names: Container[str],
+    first: int = 0,
+    end: int | None = None,
+) -> Data:
     """Return those of the named datasets that are there, of the runs ``first`` up to ``end``.
 
     Raises ValueError as ``check`` does.
     """
     data: Data = {}
-    for name in filter(names.__contains__, file):
-        if (dataset := _dataset(file, name)) is not None:
-            value = dataset[first:end] if has_runs(name) else dataset[()]
-            is_text = _is_text(dataset)
-            data[name] = np.array([text.decode() for text in value]) if is_text else value
+    for name, dataset in _datasets(file, attributes, names).items():
+        value = dataset[first:end] if has_runs(name) else dataset[()]
+        is_text = _is_text(dataset)
+        data[name] = np.array([text.decode() for text in value]) if is_text else value
     return data
 
 
@@ -59,6 +66,14 @@ def frames_of(file: Any) -> dict[str, str]:
     """Return the axes and origin of those datasets that say it."""
     said = ((name, dataset.attrs.get("frame")) for name, dataset in file.items())
     return {name: str(frame) for name, frame in said if frame is not None}
+
+
+def _datasets(file: Any, attributes: Mapping[str, Any], names: Container[str]) -> dict[str, Any]:
+    """Return the named datasets, or raise ValueError where they are not those that are told."""
+    found = {name: _dataset(file, name) for name in file if name in names}
+    there = {name: dataset for name, dataset in found.items() if dataset is not None}
+    require_as_told(attributes, there, names)
+    return there
 
 
 def _dataset(file: Any, name: str) -> Any:

@@ -29,7 +29,7 @@ def find_results(folder: Path) -> Results:
     chunks: list[Chunk] = []
     left_out: list[str] = []
     for path in _files(folder):
-        found, address = store.inspect(path, numbers=False), Address.of(path)
+        found, address = store.inspect(path, store.Depth.LABEL), Address.of(path)
         if found.condition is not store.Condition.WHOLE:
             left_out.append(f"{path} is {found.condition.value}")
         elif address is None:

@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import yaml
-
 from debrisest.arrays import Data
 from debrisest.errors import UserError
 from debrisest.results import store
@@ -15,6 +13,7 @@ from debrisest.results.address import STAGES, Address
 from debrisest.results.chunk import Chunk
 from debrisest.results.failures import Failure, failures_of
 from debrisest.results.joined import joined
+from debrisest.scenario.document import parse
 from debrisest.scenario.mistakes import allowed_names
 from debrisest.vocabulary import VOCABULARY, has_runs
 
@@ -96,8 +95,7 @@ class Results:
         self._check("case", case, self.cases)
         own = [chunk for chunk in self.chunks if chunk.address.case == case]
         last = max(own, key=lambda chunk: str(chunk.attributes["created"]))
-        resolved: dict[str, Any] = yaml.safe_load(last.attributes["scenario"])
-        return resolved
+        return parse(last.attributes["scenario"], f"{last.path}, scenario")[0].value
 
     def failures(self, case: str | None = None, estimator: str | None = None) -> list[Failure]:
         """Return the runs that gave no result, by default of all cases and estimators."""

@@ -8,6 +8,7 @@ label. HDF5 is handed nothing that was not verified: it may hang on a single dam
 import json
 import os
 import struct
+from contextlib import suppress
 from hashlib import sha256
 from itertools import chain
 from typing import Any, BinaryIO, NamedTuple
@@ -48,8 +49,8 @@ def read_label(file: BinaryIO) -> Label | None:
     label = _tail(file, size - _SEAL.size, length)
     if sha256(label).digest() != digest:
         return None
-    told = Label(**json.loads(label))
-    return told if told.length + length + _SEAL.size == size else None
+    told = _label(label)
+    return told if told and told.length + length + _SEAL.size == size else None
 
 
 def read_image(file: BinaryIO, label: Label) -> bytes | None:
@@ -85,6 +86,15 @@ def _is_complete(content: bytes) -> bool:
     """Return whether an HDF5 file is at least as long as its head says."""
     end = content[28:36] if content[8:9] in (b"\x02", b"\x03") else content[40:48]
     return len(content) >= max(48, int.from_bytes(end, "little"))
+
+
+def _label(text: bytes) -> Label | None:
+    """Return what a label tells, if it is one."""
+    with suppress(ValueError, TypeError, RecursionError):
+        told = Label(**json.loads(text))
+        if isinstance(told.attributes, dict) and type(told.length) is int:
+            return told
+    return None
 
 
 def _tail(file: BinaryIO, end: int, length: int) -> bytes:

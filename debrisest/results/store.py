@@ -25,11 +25,12 @@ from debrisest.results.sealed import (
     read_label,
     sealed,
 )
+from debrisest.results.told import forms, require_told
 from debrisest.revision import commit
 from debrisest.vocabulary import VOCABULARY
 
-SCHEMA_VERSION = 3
-_BROKEN = (ValueError, OSError, RuntimeError, KeyError)
+SCHEMA_VERSION = 4
+_BROKEN = (ValueError, OSError, RuntimeError, KeyError, TypeError, AttributeError)
 """What reading an HDF5 file raises that is not as it should be."""
 
 
@@ -65,18 +66,27 @@ def write(
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "software": _software(),
         "commit": commit(),
+        "datasets": forms(data),
     }
     content = sealed(image_of(data, told, frames or {}), told)
     with replacing(path) as temporary:
         temporary.write_bytes(content)
 
 
-def inspect(path: Path, numbers: bool = True) -> Checkpoint:
-    """Return what a path holds; numbers are verified too if asked for."""
-    found, image = _look(path, numbers)
+class Depth(Enum):
+    """How far a file is looked into; reading its data verifies all of it."""
+
+    LABEL = "its label and its length"
+    BYTES = "the digest of all its bytes too"
+    DATASETS = "each of its datasets too"
+
+
+def inspect(path: Path, depth: Depth = Depth.DATASETS) -> Checkpoint:
+    """Return what a path holds, verified as far as is asked for."""
+    found, image = _look(path, depth is not Depth.LABEL)
     try:
-        if image:
-            check(image)
+        if image and depth is Depth.DATASETS:
+            check(image, found.attributes)
     except _BROKEN:
         return Checkpoint(Condition.DAMAGED, found.attributes)
     return found
@@ -94,19 +104,19 @@ def read(
     Raises UserError where the file is not whole, has fewer runs or an attribute that is not as
     ``expected``: whatever happened since it was inspected, no data are taken for those of another.
     """
-    with _whole(path, expected or {}) as file:
-        return data_of(file, names, first, runs)
+    with _whole(path, expected or {}) as (file, attributes):
+        return data_of(file, attributes, names, first, runs)
 
 
 def frames(path: Path) -> dict[str, str]:
     """Return the axes and origin of those datasets of a checkpoint that say it."""
-    with _whole(path, {}) as file:
+    with _whole(path, {}) as (file, _):
         return frames_of(file)
 
 
 @contextmanager
-def _whole(path: Path, expected: Mapping[str, Any]) -> Iterator[Any]:
-    """Yield the verified HDF5 file of a checkpoint, or raise UserError."""
+def _whole(path: Path, expected: Mapping[str, Any]) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Yield the verified HDF5 file of a checkpoint and its attributes, or raise UserError."""
     (condition, attributes), image = _look(path)
     if condition is Condition.WHOLE and not fits(attributes, expected):
         condition = Condition.ANOTHER
@@ -114,9 +124,10 @@ def _whole(path: Path, expected: Mapping[str, Any]) -> Iterator[Any]:
         raise UserError(_told(path, condition))
     try:
         with opened(image) as file:
-            yield file
+            yield file, attributes
     except _BROKEN:
-        raise UserError(_told(path, Condition.DAMAGED)) from None
+        said = "its datasets are not those that a step writes; delete it, and a sweep computes it"
+        raise UserError(f"{path} is {Condition.DAMAGED.value}: {said} again") from None
 
 
 def fits(attributes: Mapping[str, Any], expected: Mapping[str, Any]) -> bool:
@@ -137,7 +148,11 @@ def _look(path: Path, numbers: bool = True) -> tuple[Checkpoint, bytes]:
             return Checkpoint(_without_label(file)), b""
         if label.attributes.get("schema_version") != SCHEMA_VERSION:
             return Checkpoint(Condition.OTHER_VERSION, label.attributes), b""
-        image = read_image(file, label) if numbers else b""
+        try:
+            require_told(label.attributes)
+            image = read_image(file, label) if numbers else b""
+        except ValueError:
+            image = None
     condition = Condition.DAMAGED if image is None else Condition.WHOLE
     return Checkpoint(condition, label.attributes), image or b""
 

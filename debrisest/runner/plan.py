@@ -134,7 +134,7 @@ class _Chunk:
             inputs=inputs,
             key=_key(inputs, [step.key for step in upstream]),
         )
-        found = store.inspect(step.path)
+        found = store.inspect(step.path, store.Depth.BYTES)
         reason, notice = out_of_date(step, found, self._asked_for(upstream))
         same = store.fits(found.attributes, step.attributes)
         self.held.append(found.attributes.get("runs", 0) if same and reason else 0)

@@ -25,4 +25,6 @@ def not_read_back(step: Step) -> str:
 
 def _is_there(step: Step) -> bool:
     found = store.inspect(step.path)
-    return found.condition == store.Condition.WHOLE and found.attributes["stage_key"] == step.key
+    return (
+        found.condition == store.Condition.WHOLE and found.attributes.get("stage_key") == step.key
+    )

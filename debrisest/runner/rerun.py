@@ -18,6 +18,8 @@ from debrisest.runner.compute import compute
 from debrisest.runner.plan import Selection, Step, plan
 from debrisest.scenario.load import load_scenario
 
+_NEEDED = ("scenario", "first_run", "runs", "estimator", "plugins")
+
 
 class Rerun(NamedTuple):
     """What a file holds, and how it differs from what is computed now."""
@@ -55,6 +57,8 @@ def _attributes(path: Path) -> dict[str, Any]:
     condition, attributes = store.inspect(path)
     if condition is not store.Condition.WHOLE:
         raise UserError(f"{path}: the file is {condition.value}; give a file of results (.h5)")
+    if lacking := [name for name in _NEEDED if name not in attributes]:
+        raise UserError(f"{path}: no step of a sweep made this file: it lacks {lacking[0]}")
     return attributes
 
 

@@ -119,7 +119,7 @@ def _measured(
     key: CellKey, estimator: str, table: Table, scenario: LoadedScenario, results: Assessed
 ) -> dict[str, Any] | None:
     """Return the figure of a cell with its interval and its runs, or None if it is not there."""
-    tables, dataset = scenario.common.tables, _dataset(table, key.quantity)
+    tables, dataset = scenario.common.tables, dataset_of(table, key.quantity)
     parts = [results.get((case, estimator)) for case in tables.means.get(key.case, [key.case])]
     present = [part for part in parts if part is not None and part.shows(dataset)]
     if not present or len(present) < len(parts):
@@ -144,14 +144,14 @@ def _measured(
     }
 
 
-def _dataset(table: Table, quantity: str) -> str:
+def dataset_of(table: Table, quantity: str) -> str:
     """Return where a quantity lies: what a recovery gives is told apart by its name."""
     recovered = f"recovered_{quantity}"
     return recovered if table.stage == "recover" and recovered in VOCABULARY else quantity
 
 
 def _unit(table: Table, quantity: str) -> str:
-    return table.units.get(quantity) or VOCABULARY[_dataset(table, quantity)].table_unit
+    return table.units.get(quantity) or VOCABULARY[dataset_of(table, quantity)].table_unit
 
 
 def _figures(
@@ -161,7 +161,7 @@ def _figures(
 
     The rules of divergence speak of a filter's result; a recovery counts unless it is not finite.
     """
-    dataset = _dataset(table, key.quantity)
+    dataset = dataset_of(table, key.quantity)
     figures = part.figures(dataset, key.statistic, key.window)
     figures = figures * (table_scale(dataset, _unit(table, key.quantity)) / table_scale(dataset))
     lost = part.good & ~np.isfinite(figures)

@@ -10,7 +10,7 @@ from debrisest.results.assessed import assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
-from debrisest.show.tables.cells import COLUMNS, cells
+from debrisest.show.tables.cells import COLUMNS, cells, dataset_of
 from debrisest.show.tables.render import MARK, render
 
 
@@ -28,7 +28,14 @@ def tabulate(
     files = [one for one in wanted if one.address.stage in shown]
     results = up_to_date(find_results(out / scenario.name), files, complete=True)
     stale = [one for one in files if one.reason]
-    return cells(scenario, assessed(results, simulated)), stale
+    return cells(scenario, assessed(results, simulated, _quantities(scenario))), stale
+
+
+def _quantities(scenario: LoadedScenario) -> set[str]:
+    """Return the datasets that the tables and their rules of divergence need."""
+    tables = scenario.common.tables
+    shown = {dataset_of(table, name) for table in tables.layout for name in table.quantities}
+    return shown | {rule.quantity for rule in tables.diverged}
 
 
 def chosen(rows: pd.DataFrame, asked: Callable[[str, str], bool]) -> pd.DataFrame:

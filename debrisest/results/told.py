@@ -1,0 +1,64 @@
+"""What the attributes of a checkpoint tell, and whether it can be so."""
+
+import json
+from collections.abc import Container, Mapping
+from typing import Any
+
+import numpy as np
+
+from debrisest.arrays import Data
+from debrisest.vocabulary import VOCABULARY
+
+_TYPES: dict[str, type] = {
+    "first_run": int,
+    "runs": int,
+    "seed": int,
+    **dict.fromkeys(("case", "estimator", "stage", "stage_key", "scenario", "created"), str),
+    **dict.fromkeys(("software", "commit", "imported_from"), str),
+    **dict.fromkeys(("inputs", "plugins", "datasets"), dict),
+}
+"""Of each attribute; dict: a text (JSON) of one."""
+_ALWAYS = ("stage", "created", "datasets")
+_OF_STEPS = ("runs", "inputs", "scenario")
+"""What a file has that some step made, which then has a stage_key."""
+
+
+def forms(data: Data) -> str:
+    """Return the type and the lengths of all datasets as the attribute ``datasets``."""
+    return json.dumps({name: form(value) for name, value in data.items()})
+
+
+def form(values: Any) -> str:
+    """Return the type and the lengths of an array or dataset in words."""
+    kind = "text" if values.dtype.kind in "OUS" else "number"
+    return " ".join(map(str, (kind, *values.shape)))
+
+
+def require_told(attributes: Mapping[str, Any]) -> None:
+    """Raise ValueError for an attribute that is missing, or of a type that it cannot have."""
+    for name in (*_ALWAYS, *_OF_STEPS * ("stage_key" in attributes)):
+        if name not in attributes:
+            raise ValueError(f"{name} is missing")
+    for name in _TYPES.keys() & attributes.keys():
+        value = attributes[name]
+        value = json.loads(value) if _TYPES[name] is dict else value
+        if type(value) is not _TYPES[name]:
+            raise ValueError(f"{name} is {value!r}")
+    if attributes.get("runs", 1) < 1:
+        raise ValueError("it has no runs")
+
+
+def require_as_told(
+    attributes: Mapping[str, Any], found: Mapping[str, Any], names: Container[str]
+) -> None:
+    """Raise ValueError unless of the named datasets just those are there that are told."""
+    told = json.loads(attributes["datasets"])
+    wanted = {name: words for name, words in told.items() if name in names and name in VOCABULARY}
+    if {name: form(values) for name, values in found.items()} != wanted:
+        raise ValueError("its datasets are others than it says")
+    if "run" in found and "runs" in attributes:
+        runs = attributes.get("first_run", 0) + np.arange(attributes["runs"])
+        if not np.array_equal(found["run"], runs):
+            raise ValueError("its runs are others than it says")
+    if "time_s" in found and not np.all(np.diff(found["time_s"]) > 0):
+        raise ValueError("its times do not ascend")
