@@ -44,16 +44,16 @@ def descend(
 ) -> Descent:
     """Return the best arc near ``arc``."""
     damping, settled = 1e-4, False
-    normal, cost = _normal(evidence, arc, held)
+    normal, lowest = _normal(evidence, arc, held)
     for _ in range(iterations):
         step, gain = _step(normal, damping, evidence.unknowns_fixed)
         if gain < _SMALLEST_GAIN:
             settled = True
             break
         tried = displaced(arc, step)
-        if _cost(evidence, tried, held) < cost:
+        if _cost(evidence, tried, held) < lowest:
             arc, damping = tried, max(0.1 * damping, _LEAST_DAMPING)
-            normal, cost = _normal(evidence, arc, held)
+            normal, lowest = _normal(evidence, arc, held)
         elif damping > _MOST_DAMPING:
             break
         else:
@@ -81,6 +81,11 @@ def _normal(evidence: Evidence, arc: Arc, held: Prior) -> tuple[Normal, float]:
     return Normal(normal.chi2, pull, hold), normal.chi2 + _prior(arc, held)
 
 
+def cost(evidence: Evidence, arc: Arc) -> float:
+    """Return the chi-square with the wide prior, infinite where no body is looked for."""
+    return _cost(evidence, arc, _NOTHING_ELSE)
+
+
 def _prior(arc: Arc, held: Prior) -> float:
     off = arc.log_inertia - held.centre
     wide = float(np.sum(arc.log_inertia**2)) / PRIOR_SIGMA**2
@@ -92,8 +97,8 @@ def _cost(evidence: Evidence, arc: Arc, held: Prior) -> float:
     with np.errstate(over="ignore", invalid="ignore"):
         if not np.linalg.norm(arc.log_inertia) < _WIDEST:
             return np.inf
-        cost = evidence.chi2(*along(arc, evidence.times)) + _prior(arc, held)
-    return cost if np.isfinite(cost) else np.inf
+        total = evidence.chi2(*along(arc, evidence.times)) + _prior(arc, held)
+    return total if np.isfinite(total) else np.inf
 
 
 def _step(normal: Normal, damping: float, fixed: int) -> tuple[Array, float]:

@@ -187,6 +187,7 @@ def _motion(
         path=solution.path,
         arc=solution.arc,
         covariance=solution.covariance,
+        spread=solution.spread,
         fit=solution.fit,
         holds=solution.holds,
         noise=solution.noise * unit,

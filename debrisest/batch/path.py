@@ -6,9 +6,10 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import quaternion
-from debrisest.batch.arc import Arc, Course, along, course, displaced
+from debrisest.batch.arc import Arc, along
+from debrisest.batch.spread import Sides, Spread, halved
 
-_FOURTH_MOMENT = 3.0  # of a Gaussian: mean square of a square
+Halves = tuple[Array, Array]
 
 
 class Path(NamedTuple):
@@ -39,32 +40,31 @@ class Path(NamedTuple):
         return type(self)(*(part[epochs] for part in self))
 
 
-def path_of(arc: Arc, covariance: Array, times: Array) -> Path:
-    """Return torque-free motion at ``times``, with the ``covariance (11, 11)`` of its unknowns.
+def path_of(arc: Arc, spread: Spread, times: Array) -> Path:
+    """Return torque-free motion at ``times``, with what lies between the sides of a spread.
 
-    With the second order of what one sigma along each axis of the covariance does: the size of a
-    rate may be known far better than its direction, and errors then lie on a sphere, not a plane.
+    Nothing is linearised: the size of a rate may be known far better than its direction, and
+    errors then lie on a sphere, not on a plane.
     """
-    motion = course(arc, times)
-    linear = (motion.turn_by, motion.rate_by)
-    turn, rate = (
-        by @ covariance @ np.swapaxes(by, -1, -2) + _FOURTH_MOMENT * bend
-        for by, bend in zip(linear, _bends(arc, covariance, motion, times))
-    )
-    return Path(times, motion.q, motion.rate, turn, rate)
+    q, rate = along(arc, times)
+    turns, rates = zip(*(_moved(q, rate, sides, times) for sides in spread))
+    return Path(times, q, rate, *(_covariance(*parts) for parts in (turns, rates)))
 
 
-def _bends(arc: Arc, covariance: Array, motion: Course, times: Array) -> tuple[Array, Array]:
-    """Squares (time, 3, 3) of the second order of attitude and rate."""
-    scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
-    values, axes = np.linalg.eigh(covariance / scale[:, None] / scale)
-    sides = (scale[:, None] * axes * np.sqrt(np.maximum(values, 0.0))).T
-    q, rate = along(displaced(arc, np.concatenate([sides, -sides])), times)
-    turn = quaternion.log(quaternion.multiply(q, quaternion.conjugate(motion.q)))
-    count = len(sides)
-    bends = (0.5 * (off[:count] + off[count:]) for off in (turn, rate - motion.rate))
-    of_turn, of_rate = (np.einsum("kti,ktj->tij", bend, bend) for bend in bends)
-    return of_turn, of_rate
+def _moved(q: Array, rate: Array, sides: Sides, times: Array) -> tuple[Halves, Halves]:
+    """Halves and middles (axis, time, 3) of attitude and rate between the sides."""
+    turns, rates = [], []
+    for arcs in (sides.ahead, sides.behind):
+        other, other_rate = along(arcs, times)
+        turns.append(quaternion.log(quaternion.multiply(other, quaternion.conjugate(q))))
+        rates.append(other_rate - rate)
+    return halved(turns[0], turns[1], sides.far), halved(rates[0], rates[1], sides.far)
+
+
+def _covariance(axes: Halves, along_both: Halves, across: Halves) -> Array:
+    twist = 0.5 * (along_both[1] - across[1])
+    ways = np.concatenate([*axes, twist])
+    return np.asarray(np.einsum("kti,ktj->tij", ways, ways))
 
 
 def unknown_path(times: Array) -> Path:

@@ -4,6 +4,7 @@ import numpy as np
 
 from debrisest.batch.arc import Arc, along, course, displaced
 from debrisest.batch.path import path_of
+from debrisest.batch.spread import straight
 
 
 def test_second_order_is_much_nearer_to_drawn_errors_than_the_linear_covariance() -> None:
@@ -16,7 +17,7 @@ def test_second_order_is_much_nearer_to_drawn_errors_than_the_linear_covariance(
     arc = Arc(0.0, np.array([1.0, 0, 0, 0]), np.array([0.0, 0.02, 0.1]), 0.2 * rng.normal(size=5))
     sigma = np.array([0.02] * 3 + [0.01, 0.01, 1e-5] + [1e-3] * 5)
     times = np.array([0.0, 20.0, 60.0])
-    path = path_of(arc, np.diag(sigma**2), times)
+    path = path_of(arc, straight(arc, np.diag(sigma**2)), times)
     _, rate = along(displaced(arc, sigma * rng.normal(size=(4000, 11))), times)
     off = rate - path.rate
     motion = course(arc, times)
