@@ -96,7 +96,9 @@ def _torque_free(
     judged = _judged(fit, noise_known)
     noise = 1.0 if judged is Judged.CHI_SQUARE_AND_BLOCKS else float(np.sqrt(fit.excess))
     scaled = evidence.scaled(noise)
-    found = descend(scaled, growth.found.arc, 10)
+    found = growth.found
+    if noise != 1.0 or not found.settled:
+        found = descend(scaled, found.arc, 10)
     linear = covariance(found.hold, evidence.unknowns_fixed)
     alone = True
     if not nutates_plainly(scaled, found.arc, linear):
