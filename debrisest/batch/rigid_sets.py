@@ -1,4 +1,7 @@
-"""Which tracks belong to one rigid body, by the distances of pairs; and the noise these show."""
+"""Which tracks belong to one rigid body, by the distances of pairs; and the noise these show.
+
+A point among many is compared with some partners only, so that the cost grows with their number.
+"""
 
 from typing import NamedTuple
 
@@ -13,6 +16,8 @@ _FEWEST_COMMON = 4
 _LOOSE, _SPREAD = 1.5, 4.0  # limit of a pair's noise, and how it widens with few epochs
 _ODD = 6.0  # sigmas of a distance
 _AGREED = 0.8  # of the members that a point was seen with
+_MANY = 40  # points up to which all are compared with each other
+_MEETINGS, _MET = 10, 2  # epochs at which one of many meets partners, and how many at each
 
 
 class Pairs(NamedTuple):
@@ -21,23 +26,25 @@ class Pairs(NamedTuple):
     length: Array
     """Median distance, m, or that of the known body."""
     noise: Array
-    """Standard deviation of one point along the line, m, robust, NaN where seldom seen together."""
+    """Standard deviation of one point along the line, m, robust, NaN where not compared, or seldom
+    seen together."""
     common: Array
-    """Epochs in which both are seen."""
+    """Epochs in which both are seen, zero where not compared."""
 
 
 def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
     """Return how constant the distances are: about their median, or those of a known body."""
+    partners = _partners(tracks.seen)
     features = tracks.weight.shape[1]
     length, noise = np.full((2, features, features), np.nan)
     common = np.zeros((features, features))
     for i in range(features):
         shows = tracks.seen[:, i]
-        both = tracks.seen[shows]
-        distance = np.linalg.norm(tracks.points[shows] - tracks.points[shows, i, None], axis=-1)
-        common[i] = both.sum(axis=0)
-        enough = (common[i] >= _FEWEST_COMMON) & (np.arange(features) != i)
-        shown = np.where(both, distance, np.nan)[:, enough]
+        common[i, partners[i]] = tracks.seen[np.ix_(shows, partners[i])].sum(axis=0)
+        enough = common[i] >= _FEWEST_COMMON
+        chosen = np.ix_(shows, enough)
+        distance = np.linalg.norm(tracks.points[chosen] - tracks.points[shows, i, None], axis=-1)
+        shown = np.where(tracks.seen[chosen], distance, np.nan)
         middle = np.nanmedian(shown, axis=0)
         if model is not None:
             middle = np.linalg.norm(model - model[i], axis=-1)[enough]
@@ -63,9 +70,12 @@ def largest_rigid_set(found: Pairs, sigma: float) -> BoolArray:
     """
     limit = sigma * (_LOOSE + _SPREAD / np.sqrt(np.maximum(found.common, 1.0)))
     votes = np.where(np.isfinite(found.noise), found.noise <= limit, np.nan)
-    best = np.zeros(len(votes), dtype=bool)
+    best, tried = np.zeros((2, len(votes)), dtype=bool)
     for seed in np.argsort(-np.nansum(votes, axis=1)):
+        if tried[seed]:
+            continue
         members = _grown(votes, int(seed))
+        tried |= members
         if members.sum() > best.sum():
             best = members
         if best.sum() > len(votes) / 2:
@@ -84,11 +94,13 @@ def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
         asked, agreed = np.zeros((2, *seen.shape))
         for i in range(seen.shape[1]):
             shows = seen[:, i]
-            points = tracks.points[shows]
-            distance = np.linalg.norm(points - points[:, i, None], axis=-1)
-            votes = seen[shows] & np.isfinite(found.length[i])
+            others = np.isfinite(found.length[i])
+            chosen = np.ix_(shows, others)
+            points = tracks.points[chosen] - tracks.points[shows, i, None]
+            votes = seen[chosen]
             asked[shows, i] = votes.sum(axis=1)
-            close = np.abs(distance - found.length[i]) < _ODD * np.sqrt(2.0) * sigma
+            distance = np.linalg.norm(points, axis=-1)
+            close = np.abs(distance - found.length[i, others]) < _ODD * np.sqrt(2.0) * sigma
             agreed[shows, i] = np.sum(votes & close, axis=1)
         odd |= seen & (agreed < 0.5 * asked)
     return odd
@@ -97,12 +109,33 @@ def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
 def _grown(votes: Array, seed: int) -> BoolArray:
     """Return the set about a point: others join, those with most agreement first."""
     members = np.zeros(len(votes), dtype=bool)
-    members[seed] = True
+    asked, agreed = np.zeros((2, len(votes)))
+    newest = seed
     while True:
-        inside = votes[:, members]
-        asked = np.isfinite(inside).sum(axis=1)
-        agreed = np.nansum(inside, axis=1)
+        members[newest] = True
+        asked += np.isfinite(votes[:, newest])
+        agreed += np.nan_to_num(votes[:, newest])
         fits = ~members & (asked > 0) & (agreed >= _AGREED * asked)
         if not fits.any():
             return members
-        members[np.argmax(np.where(fits, agreed, -1.0))] = True
+        newest = int(np.argmax(np.where(fits, agreed, -1.0)))
+
+
+def _partners(seen: BoolArray) -> BoolArray:
+    """Return which points are compared (feature, feature): all, or some that are seen together.
+
+    One of many meets others by lot at epochs that are spread over those at which it is seen.
+    """
+    features = seen.shape[1]
+    if features <= _MANY:
+        return ~np.eye(features, dtype=bool)
+    partners = np.zeros((features, features), dtype=bool)
+    lot = np.random.default_rng(0)
+    for i in range(features):
+        epochs = np.flatnonzero(seen[:, i])
+        spread = np.linspace(0, len(epochs) - 1, _MEETINGS if len(epochs) else 0)
+        for epoch in epochs[spread.astype(np.int64)]:
+            others = np.flatnonzero(seen[epoch])
+            partners[i, lot.choice(others, _MET)] = True
+    np.fill_diagonal(partners, False)
+    return np.asarray(partners | partners.T)
