@@ -17,7 +17,7 @@ _LOOSE, _SPREAD = 1.5, 4.0  # limit of a pair's noise, and how it widens with fe
 _ODD = 6.0  # sigmas of a distance
 _AGREED = 0.8  # of the members that a point was seen with
 _MANY = 40  # points up to which all are compared with each other
-_MEETINGS, _MET = 10, 2  # epochs at which one of many meets partners, and how many at each
+_MEETINGS = 10  # of one of many with partners
 
 
 class Pairs(NamedTuple):
@@ -34,24 +34,37 @@ class Pairs(NamedTuple):
 
 def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
     """Return how constant the distances are: about their median, or those of a known body."""
-    partners = _partners(tracks.seen)
-    features = tracks.weight.shape[1]
+    seen, points = _by_feature(tracks)
+    partners = _partners(seen)
+    features = len(seen)
     length, noise = np.full((2, features, features), np.nan)
     common = np.zeros((features, features))
     for i in range(features):
-        shows = tracks.seen[:, i]
-        common[i, partners[i]] = tracks.seen[np.ix_(shows, partners[i])].sum(axis=0)
+        together = seen[:, seen[i]][partners[i]]
+        common[i, partners[i]] = together.sum(axis=-1)
         enough = common[i] >= _FEWEST_COMMON
-        chosen = np.ix_(shows, enough)
-        distance = np.linalg.norm(tracks.points[chosen] - tracks.points[shows, i, None], axis=-1)
-        shown = np.where(tracks.seen[chosen], distance, np.nan)
-        middle = np.nanmedian(shown, axis=0)
+        apart = points[enough][:, seen[i]] - points[i, seen[i]]
+        distance = np.linalg.norm(apart, axis=-1)
+        shown = np.where(seen[enough][:, seen[i]], distance, np.nan)
+        middle = _median(shown)
         if model is not None:
             middle = np.linalg.norm(model - model[i], axis=-1)[enough]
         length[i, enough] = middle
-        deviation = np.abs(shown - middle)
-        noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * np.nanmedian(deviation, axis=0)
+        noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * _median(np.abs(shown - middle[:, None]))
     return Pairs(length, noise, common)
+
+
+def _by_feature(tracks: Tracks) -> tuple[BoolArray, Array]:
+    """Return what is seen (feature, time) and where (feature, time, 3)."""
+    seen, points = tracks.seen.T, np.swapaxes(tracks.points, 0, 1)
+    return np.ascontiguousarray(seen), np.ascontiguousarray(points)
+
+
+def _median(values: Array) -> Array:
+    """Return the median of each row, of which some are NaN, but not all."""
+    ordered, count = np.sort(values, axis=-1), np.isfinite(values).sum(axis=-1)
+    rows = np.arange(len(values))
+    return np.asarray(0.5 * (ordered[rows, (count - 1) // 2] + ordered[rows, count // 2]))
 
 
 def noise_of(found: Pairs) -> float:
@@ -88,22 +101,20 @@ def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
 
     So wrong matches are told before any motion is known, also two that are swapped.
     """
-    odd = np.zeros(tracks.seen.shape, dtype=bool)
+    shown, points = _by_feature(tracks)
+    odd = np.zeros(shown.shape, dtype=bool)
     for _ in range(2):
-        seen = tracks.seen & ~odd
+        seen = shown & ~odd
         asked, agreed = np.zeros((2, *seen.shape))
-        for i in range(seen.shape[1]):
-            shows = seen[:, i]
+        for i in range(len(seen)):
             others = np.isfinite(found.length[i])
-            chosen = np.ix_(shows, others)
-            points = tracks.points[chosen] - tracks.points[shows, i, None]
-            votes = seen[chosen]
-            asked[shows, i] = votes.sum(axis=1)
-            distance = np.linalg.norm(points, axis=-1)
-            close = np.abs(distance - found.length[i, others]) < _ODD * np.sqrt(2.0) * sigma
-            agreed[shows, i] = np.sum(votes & close, axis=1)
+            votes = seen[others][:, seen[i]]
+            asked[i, seen[i]] = votes.sum(axis=0)
+            apart = points[others][:, seen[i]] - points[i, seen[i]]
+            off = np.linalg.norm(apart, axis=-1) - found.length[i, others, None]
+            agreed[i, seen[i]] = np.sum(votes & (np.abs(off) < _ODD * np.sqrt(2.0) * sigma), axis=0)
         odd |= seen & (agreed < 0.5 * asked)
-    return odd
+    return np.asarray(odd.T)
 
 
 def _grown(votes: Array, seed: int) -> BoolArray:
@@ -126,16 +137,15 @@ def _partners(seen: BoolArray) -> BoolArray:
 
     One of many meets others by lot at epochs that are spread over those at which it is seen.
     """
-    features = seen.shape[1]
+    features = len(seen)
     if features <= _MANY:
         return ~np.eye(features, dtype=bool)
     partners = np.zeros((features, features), dtype=bool)
     lot = np.random.default_rng(0)
     for i in range(features):
-        epochs = np.flatnonzero(seen[:, i])
+        epochs = np.flatnonzero(seen[i])
         spread = np.linspace(0, len(epochs) - 1, _MEETINGS if len(epochs) else 0)
         for epoch in epochs[spread.astype(np.int64)]:
-            others = np.flatnonzero(seen[epoch])
-            partners[i, lot.choice(others, _MET)] = True
+            partners[i, lot.choice(np.flatnonzero(seen[:, epoch]))] = True
     np.fill_diagonal(partners, False)
     return np.asarray(partners | partners.T)

@@ -10,6 +10,7 @@ from debrisest.batch.arc import Arc, along
 from debrisest.batch.curvature import spread_of
 from debrisest.batch.descent import covariance, descend
 from debrisest.batch.evidence import Evidence
+from debrisest.batch.holding import holding
 from debrisest.batch.lasting_errors import with_lasting_errors
 from debrisest.batch.local_rates import Local, local_rates
 from debrisest.batch.motion import NO_COVARIANCE, Judged, Status
@@ -157,7 +158,7 @@ def _any_motion(
         path = with_lasting_errors(path, evidence, found.noise)
     return Solution(
         *(Status.NOT_TORQUE_FREE, judged, path, None, NO_COVARIANCE, None, growth.fit),
-        *(growth.span, found.noise, evidence, local, found),
+        *(holding(evidence, local), found.noise, evidence, local, found),
     )
 
 

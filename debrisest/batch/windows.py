@@ -60,7 +60,9 @@ def grow(evidence: Evidence, arc: Arc, half: float, noise: float = 1.0) -> Growt
         found, kept = _fitted(evidence.within(_chosen(evidence, low, high, whole)), arc)
         fit = tested(kept, found.arc)
         now = Growth(found, fit, kept, (max(low, first), min(high, last)), whole)
-        if fit.excess > _WILD * np.clip(noise, 1.0, _LARGEST_NOISE) ** 2 and not (fit.steady and good is None):
+        if fit.excess > _WILD * np.clip(noise, 1.0, _LARGEST_NOISE) ** 2 and not (
+            fit.steady and good is None
+        ):
             return (good or now)._replace(whole=False)
         if whole:
             return now
@@ -125,4 +127,3 @@ def _wider(evidence: Evidence, found: Descent, low: float, high: float) -> tuple
     sure = np.sqrt(np.linalg.eigvalsh(turn)[:, -1]).reshape(2, _STEPS) < _SURE_TURN
     below, above = (max(int(np.sum(np.cumprod(side))) - 1, 0) for side in sure)
     return float(before[below]), float(after[above])
-

@@ -67,4 +67,6 @@ def test_wrong_matches_among_many_points_are_odd(tumbling) -> None:
     odd = rng.uniform(size=points.shape[:2]) < 0.02
     points[odd] += 1.0
     tracked = tracks(tumbling.times, points, 0.02)
-    assert np.array_equal(odd_points(tracked, pairs(tracked), 0.02), odd)
+    found = odd_points(tracked, pairs(tracked), 0.02)
+    assert np.mean(found[odd]) > 0.99
+    assert np.mean(found[~odd]) < 1e-3
