@@ -6,8 +6,6 @@ that stand both tests are grown from several starts; the ends of the longest are
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from debrisest.batch.acceptance import tested
 from debrisest.batch.arc import Arc
 from debrisest.batch.descent import descend
