@@ -101,6 +101,8 @@ class Motion(NamedTuple):
     """(feature, 3), m; zero where they were given."""
     kept: BoolArray
     """Which points belong to the body (feature,)."""
+    other_body: BoolArray
+    """Which of the other points keep their distances from each other (feature,): a second body."""
     used: BoolArray
     """Which observations count: (time, feature), or (time,) without points."""
     rejected: float

@@ -14,6 +14,7 @@ _TO_SIGMA = 1.4826  # from the median deviation of Gaussian noise
 _RIGID_SHARE = 0.2  # of all pairs, at least so many are rigid
 _FEWEST_COMMON = 4
 _LOOSE, _SPREAD = 1.5, 4.0  # limit of a pair's noise, and how it widens with few epochs
+_FEWEST_OF_A_BODY = 3
 _ODD = 6.0  # sigmas of a distance
 _AGREED = 0.8  # of the members that a point was seen with
 _MANY = 40  # points up to which all are compared with each other
@@ -94,6 +95,16 @@ def largest_rigid_set(found: Pairs, sigma: float) -> BoolArray:
         if best.sum() > len(votes) / 2:
             break
     return best
+
+
+def other_body(found: Pairs, sigma: float, body: BoolArray) -> BoolArray:
+    """Return which points (feature,) that are not of a body keep their distances: three or more."""
+    rest = np.flatnonzero(~body)
+    among = np.ix_(rest, rest)
+    members = rest[largest_rigid_set(Pairs(*(part[among] for part in found)), sigma)]
+    result = np.zeros(len(body), dtype=bool)
+    result[members] = len(members) >= _FEWEST_OF_A_BODY
+    return result
 
 
 def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:

@@ -126,7 +126,7 @@ def _points(motion: Motion) -> Data:
         return {}
     used = np.asarray(float(motion.kept.sum()))
     points = {"point_f": motion.points, "point_f_sigma": motion.points_sigma}
-    return points | {"features_used": used}
+    return points | {"features_used": used, "on_other_body": motion.other_body.astype(np.float64)}
 
 
 def _at_end(motion: Motion, times: Array) -> Data:
