@@ -46,7 +46,7 @@ def test_rates_show_the_ratios_of_the_inertia(tmp_path: Path, cli: Callable, uni
     [
         (lambda t: t.rename(columns={"rate_x_deg_s": "rate_x_rad_s"}), "column"),
         (lambda t: t.assign(sigma_deg_s=0.0), "sigma_deg_s: must be positive"),
-        (lambda t: pd.concat([t, t.iloc[:1] + [1, 1, 1, 0]]), "rate_x_deg_s"),
+        (lambda t: pd.concat([t, t.head(1).add([1, 1, 1, 0])]), "rate_x_deg_s"),
     ],
 )
 def test_files_of_rates_that_are_refused(

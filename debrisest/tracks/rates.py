@@ -10,7 +10,7 @@ from debrisest.tracks.table import read_table
 from debrisest.tracks.types import Rates
 
 _NAMES = {
-    unit: tuple(f"rate_{axis}_{unit}" for axis in "xyz") + (f"sigma_{unit}",)
+    unit: (*(f"rate_{axis}_{unit}" for axis in "xyz"), f"sigma_{unit}")
     for unit in ("deg_s", "rad_s")
 }
 COLUMNS = frozenset(name for names in _NAMES.values() for name in names[:3])

@@ -16,7 +16,7 @@ from debrisest.tracks.wide import read_wide
 def read_measured(
     path: Path, rate_hz: float | None = None, times: Times | None = None
 ) -> Tracks | Poses | Rates | ColmapModel:
-    """Read tracks, poses or rates of whatever format; images need a frame rate, Hz, or times by name.
+    """Read tracks, poses or rates of any format; images need a frame rate, Hz, or times by name.
 
     Raises `UserError`: every problem with file, line and column, and what to do.
     """
