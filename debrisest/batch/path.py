@@ -6,10 +6,8 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import quaternion
-from debrisest.batch.arc import Arc, along
+from debrisest.batch.arc import RATE, TURN, UNKNOWNS, Arc, along
 from debrisest.batch.spread import Sides, Spread, halved
-
-Halves = tuple[Array, Array]
 
 
 class Path(NamedTuple):
@@ -24,6 +22,8 @@ class Path(NamedTuple):
     """Of the attitude, in inertial axes (time, 3, 3), rad^2."""
     rate_covariance: Array
     """(time, 3, 3), rad^2/s^2."""
+    joint: Array
+    """Of attitude, rate and inertia (time, 11, 11), NaN without a law of motion."""
 
     @property
     def turn_sigma(self) -> Array:
@@ -47,27 +47,26 @@ def path_of(arc: Arc, spread: Spread, times: Array) -> Path:
     errors then lie on a sphere, not on a plane.
     """
     q, rate = along(arc, times)
-    turns, rates = zip(*(_moved(q, rate, sides, times) for sides in spread))
-    return Path(times, q, rate, *(_covariance(*parts) for parts in (turns, rates)))
+    axes, both, across = (_moved(arc, q, rate, sides, times) for sides in spread)
+    ways = np.moveaxis(np.concatenate([*axes, 0.5 * (both[1] - across[1])]), 0, 1)
+    joint = np.asarray(np.swapaxes(ways, -1, -2) @ ways)
+    return Path(times, q, rate, joint[:, TURN, TURN], joint[:, RATE, RATE], joint)
 
 
-def _moved(q: Array, rate: Array, sides: Sides, times: Array) -> tuple[Halves, Halves]:
-    """Halves and middles (axis, time, 3) of attitude and rate between the sides."""
-    turns, rates = [], []
+def _moved(arc: Arc, q: Array, rate: Array, sides: Sides, times: Array) -> tuple[Array, Array]:
+    """Half the way between the sides, and its middle, in all errors (axis, time, 11)."""
+    errors = []
     for arcs in (sides.ahead, sides.behind):
         other, other_rate = along(arcs, times)
-        turns.append(quaternion.log(quaternion.multiply(other, quaternion.conjugate(q))))
-        rates.append(other_rate - rate)
-    return halved(turns[0], turns[1], sides.far), halved(rates[0], rates[1], sides.far)
-
-
-def _covariance(axes: Halves, along_both: Halves, across: Halves) -> Array:
-    twist = 0.5 * (along_both[1] - across[1])
-    ways = np.concatenate([*axes, twist])
-    return np.asarray(np.einsum("kti,ktj->tij", ways, ways))
+        turn = quaternion.log(quaternion.multiply(other, quaternion.conjugate(q)))
+        inertia = np.broadcast_to(
+            (arcs.log_inertia - arc.log_inertia)[:, None], (*turn.shape[:2], 5)
+        )
+        errors.append(np.concatenate([turn, other_rate - rate, inertia], axis=-1))
+    return halved(errors[0], errors[1], sides.far)
 
 
 def unknown_path(times: Array) -> Path:
     """Return a path of which nothing is known."""
-    shapes = ((4,), (3,), (3, 3), (3, 3))
+    shapes = ((4,), (3,), (3, 3), (3, 3), (UNKNOWNS, UNKNOWNS))
     return Path(times, *(np.full((len(times), *shape), np.nan) for shape in shapes))
