@@ -31,6 +31,7 @@ from debrisest.parts.sensors.pointing_control import PointingControl
 from debrisest.parts.sensors.stereo_camera import StereoCamera
 from debrisest.parts.sources.datasets import Datasets
 from debrisest.parts.sources.poses import MeasuredPoses
+from debrisest.parts.sources.rates import MeasuredRates
 from debrisest.parts.sources.tracks import MeasuredTracks
 from debrisest.parts.starts.drawn_orbit import DrawnOrbit
 from debrisest.parts.starts.drawn_pose import DrawnPose
@@ -86,7 +87,7 @@ CATALOG: dict[str, list[type[Part]]] = {
         Detections,
         CameraRange,
     ],
-    "measured": [Datasets, MeasuredTracks, MeasuredPoses],
+    "measured": [Datasets, MeasuredTracks, MeasuredPoses, MeasuredRates],
     "starts": [DrawnPose, DrawnOrbit, DrawnShape, GivenGuess],
     "recovery": [BasisPursuit, DirectionCosines, LineSpectrumRecovery, PixelPose, Triangulation],
     "problem": [

@@ -1,88 +1,115 @@
-"""Covariance where the data leave much of the inertia open, and the least squares are not linear.
+"""The spread of a fit whose chi-square bends.
 
-Along a direction of the inertia that the data hardly show, the valley of the chi-square bends: the
-other unknowns move with the square of the way along it, which no second derivative at its floor
-tells. So the floor is followed, one sigma to both sides, and the bend is added.
+Along a direction of the inertia that the data hardly show, the valley of the chi-square bends, and
+rises otherwise than a parabola: the second derivative at its floor tells neither how wide it is nor
+where the other unknowns go. So where three sigma along a straight line do not cost nine, the floor
+is followed to where they do, to both sides.
 """
 
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.attitude import quaternion
 from debrisest.batch.arc import INERTIA, Arc, displaced
-from debrisest.batch.descent import PRIOR_SIGMA, Descent, Prior, descend
+from debrisest.batch.descent import PRIOR_SIGMA, Descent, Prior, cost, descend
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.observability import inertia_directions
+from debrisest.batch.spread import FAR, Sides, Spread, principal_ways, shift, stacked
 
-_WIDE = 0.04  # sigma of a log-ratio from which the valley is followed
+_OTHERS = slice(0, 6)
+_NARROW = 0.01  # of the best direction's sigma
+_STRAIGHT = 0.1  # of nine, by which a straight line may cost more or less
+_ENOUGH, _TOO_MUCH = 0.6, 1.7  # of nine, where the floor has been followed far enough
+_TRIES = 8
+_ITERATIONS = 40
 _FIRM = 1e-3  # sigma with which a point of the valley is held, in sigmas of the direction
-_FOURTH_MOMENT = 3.0  # of a Gaussian: mean square of a square
 
 
-class _Valley(NamedTuple):
-    """The floor of the chi-square one sigma to both sides along a way."""
+def spread_of(evidence: Evidence, found: Descent, covariance: Array) -> Spread:
+    """Return where the arc may be, from the ``covariance (11, 11)`` at its place.
 
-    step: Array
-    """Where it would lie if the least squares were linear (11,)."""
-    half: Array
-    """Half the way from one end to the other (11,)."""
-    bend: Array
-    """Middle of the two ends (11,)."""
-    rise: float
-    """Of chi-square and prior, to the lower end: 1 if the least squares were linear."""
-
-
-def with_curvature(evidence: Evidence, arc: Arc, covariance: Array) -> Array:
-    """Return the covariance (11, 11) with the bends of wide directions, and of pairs, added.
-
-    Where the floor rises less than a Gaussian's, the direction is as much wider, up to the prior.
+    The errors of one sigma are five along the directions of the inertia, each with what the other
+    unknowns do on the floor, and six at a given inertia.
     """
-    result = covariance.copy()
-    sigma, _ = inertia_directions(covariance)
-    wide = np.flatnonzero(sigma > _WIDE)
-    for index in wide:
-        valley = _valley(evidence, arc, covariance, np.eye(5)[index])
-        wider = 1.0 / np.clip(valley.rise, min(sigma[index] / PRIOR_SIGMA, 1.0) ** 2, 1.0)
-        skew = valley.half - valley.step
-        result += (wider - 1.0) * np.outer(valley.step, valley.step) + wider * np.outer(skew, skew)
-        result += _FOURTH_MOMENT * wider**2 * np.outer(valley.bend, valley.bend)
-    for first, second in combinations(np.eye(5)[wide], 2):
-        ahead, across = (
-            _valley(evidence, arc, covariance, first + sign * second).bend for sign in (1.0, -1.0)
-        )
-        result += 0.25 * np.outer(ahead - across, ahead - across)
-    return result
+    valley = _Valley(evidence, found, covariance)
+    rest = (covariance - valley.ways.T @ valley.ways)[_OTHERS, _OTHERS]
+    others = np.pad(principal_ways(rest), ((0, 0), (0, 5)))
+    axes = np.concatenate([others, valley.ways])
+    sides = Sides.straight(found.arc, axes)
+    bent = [way for way in range(5) if valley.may_bend(way) and valley.bends(way)]
+    for way in bent:
+        sides = sides.replaced(len(axes) - 5 + way, *valley.followed(way))
+    return Spread(sides, *valley.twists(sides, bent))
 
 
-def _valley(evidence: Evidence, arc: Arc, covariance: Array, way: Array) -> _Valley:
-    """Return the floor at both ends of a way.
+class _Valley:
+    """The chi-square about an arc, along the directions of the inertia."""
 
-    ``way (5,)``: how many sigmas along each direction of the inertia; it is held where not zero.
-    """
-    sigma, directions = inertia_directions(covariance)
-    along = directions[:, way != 0.0]
-    step = covariance[:, INERTIA] @ along @ (way / sigma)[way != 0.0]
-    firm = (along / (_FIRM * sigma[way != 0.0]) ** 2) @ along.T
-    ends = [_floor(evidence, arc, sign * step, firm) for sign in (1.0, -1.0)]
-    shifts = [_shift(arc, end.arc) for end in ends]
-    lowest = min(_cost(end) for end in ends) - _cost(descend(evidence, arc, 0))
-    return _Valley(step, 0.5 * (shifts[0] - shifts[1]), 0.5 * (shifts[0] + shifts[1]), lowest)
+    def __init__(self, evidence: Evidence, found: Descent, covariance: Array) -> None:
+        self.evidence, self.arc = evidence, found.arc
+        self.lowest = cost(evidence, found.arc)
+        self.sigma, self.directions = inertia_directions(covariance)
+        per_sigma = self.directions / np.maximum(self.sigma, np.finfo(float).tiny)
+        self.ways = (covariance[:, INERTIA] @ per_sigma).T
 
+    def rise(self, arc: Arc) -> float:
+        """Return by how much an arc costs more than the best."""
+        return cost(self.evidence, arc) - self.lowest
 
-def _floor(evidence: Evidence, arc: Arc, step: Array, firm: Array) -> Descent:
-    """Return the best fit where the inertia is held off by ``step``."""
-    start = displaced(arc, step)
-    return descend(evidence, start, 15, Prior(start.log_inertia, firm))
+    def may_bend(self, way: int) -> bool:
+        """Return whether squares of a direction's sigma are not far below the sigma of the best."""
+        return bool(self.sigma[way] ** 2 > _NARROW * self.sigma[0])
 
+    def bends(self, way: int) -> bool:
+        """Return whether the costs at both sides are not those of a parabola."""
+        ends = (displaced(self.arc, sign * FAR * self.ways[way]) for sign in (1.0, -1.0))
+        return any(abs(self.rise(end) / FAR**2 - 1.0) > _STRAIGHT for end in ends)
 
-def _shift(arc: Arc, other: Arc) -> Array:
-    """Return how the unknowns (11) have moved."""
-    turn = quaternion.log(quaternion.multiply(other.q, quaternion.conjugate(arc.q)))
-    return np.concatenate([turn, other.rate - arc.rate, other.log_inertia - arc.log_inertia])
+    def floor(self, start: Arc, ways: list[int]) -> Arc:
+        """Return the best arc with the inertia held along some directions."""
+        held = self.directions[:, ways] / (_FIRM * self.sigma[ways])
+        return descend(
+            self.evidence, start, _ITERATIONS, Prior(start.log_inertia, held @ held.T)
+        ).arc
 
+    def followed(self, way: int) -> tuple[tuple[Arc, float], tuple[Arc, float]]:
+        """Return both ends of the floor along a direction, and how many sigmas these are away."""
+        return self._end(way, 1.0), self._end(way, -1.0)
 
-def _cost(found: Descent) -> float:
-    return found.chi2 + float(np.sum(found.arc.log_inertia**2)) / PRIOR_SIGMA**2
+    def _end(self, way: int, sign: float) -> tuple[Arc, float]:
+        """Return where the floor has risen by about nine, or leaves what a body can be."""
+        farthest = FAR * PRIOR_SIGMA / self.sigma[way]
+        near, begin, above = 0.0, self.arc, np.inf
+        far = min(FAR, farthest)
+        for _ in range(_TRIES):
+            start = displaced(begin, sign * (far - near) * self.ways[way])
+            end = self.floor(start, [way])
+            share = self.rise(end) / FAR**2
+            if share > _TOO_MUCH:
+                above = far
+                far = 0.5 * (near + far)
+            elif share < _ENOUGH and far < farthest:
+                near, begin = far, end
+                far = min(2.0 * far, farthest, 0.5 * (far + above))
+            else:
+                break
+        least = far * self.sigma[way] / PRIOR_SIGMA
+        return end, max(FAR * np.sqrt(max(share, 0.0)), least)
+
+    def twists(self, sides: Sides, bent: list[int]) -> tuple[Sides, Sides]:
+        """Return the floor half way between two bent directions, and across."""
+        return self._between(sides, bent, 1.0), self._between(sides, bent, -1.0)
+
+    def _between(self, sides: Sides, bent: list[int], sign: float) -> Sides:
+        half = np.sqrt(0.5)
+        result = Sides.straight(self.arc, np.zeros((0, 11)))
+        ends = shift(self.arc, sides.ahead)[-5:], shift(self.arc, sides.behind)[-5:]
+        for first, second in combinations(bent, 2):
+            pairs = (ends[0][second], ends[1][second])[:: int(sign)]
+            starts = [displaced(self.arc, half * (ends[k][first] + pairs[k])) for k in (0, 1)]
+            found = [self.floor(start, [first, second]) for start in starts]
+            far = [np.sqrt(max(self.rise(end), FAR)) for end in found]
+            both = stacked(found[:1]), stacked(found[1:])
+            result = result.joined(Sides(*both, np.array(far)[:, None]))
+        return result

@@ -24,6 +24,7 @@ class Prior(NamedTuple):
     """(5, 5)."""
 
 
+_NOWHERE = Normal(np.inf, np.zeros(UNKNOWNS), np.zeros((UNKNOWNS, UNKNOWNS)))
 _NOTHING_ELSE = Prior(np.zeros(5), np.zeros((5, 5)))
 
 
@@ -43,17 +44,18 @@ def descend(
     evidence: Evidence, arc: Arc, iterations: int = 30, held: Prior = _NOTHING_ELSE
 ) -> Descent:
     """Return the best arc near ``arc``."""
-    damping, settled = 1e-4, False
-    normal, cost = _normal(evidence, arc, held)
+    damping, settled = 1e-6, False
+    normal, lowest = _normal(evidence, arc, held)
     for _ in range(iterations):
         step, gain = _step(normal, damping, evidence.unknowns_fixed)
         if gain < _SMALLEST_GAIN:
             settled = True
             break
         tried = displaced(arc, step)
-        if _cost(evidence, tried, held) < cost:
-            arc, damping = tried, max(0.1 * damping, _LEAST_DAMPING)
-            normal, cost = _normal(evidence, arc, held)
+        there, total = _normal(evidence, tried, held)
+        if total < lowest:
+            arc, normal, lowest = tried, there, total
+            damping = max(0.1 * damping, _LEAST_DAMPING)
         elif damping > _MOST_DAMPING:
             break
         else:
@@ -71,29 +73,37 @@ def covariance(hold: Array, fixed: int = 0) -> Array:
     return result
 
 
+def cost(evidence: Evidence, arc: Arc) -> float:
+    """Return the chi-square with the wide prior, infinite where no body is looked for."""
+    if not _sought(arc):
+        return np.inf
+    with np.errstate(over="ignore", invalid="ignore"):
+        total = evidence.chi2(*along(arc, evidence.times)) + _prior(arc, _NOTHING_ELSE)
+    return total if np.isfinite(total) else np.inf
+
+
 def _normal(evidence: Evidence, arc: Arc, held: Prior) -> tuple[Normal, float]:
-    """Return the normal equations and the cost, both with the prior."""
-    normal = evidence.normal(course(arc, evidence.times))
+    """Return the normal equations and the cost, infinite where no body is looked for."""
+    if not _sought(arc):
+        return _NOWHERE, np.inf
+    with np.errstate(over="ignore", invalid="ignore"):
+        normal = evidence.normal(course(arc, evidence.times))
     pull, hold = normal.pull.copy(), normal.hold.copy()
     pull[INERTIA] -= arc.log_inertia * PRIOR_SIGMA**-2
     pull[INERTIA] -= held.information @ (arc.log_inertia - held.centre)
     hold[INERTIA, INERTIA] += PRIOR_SIGMA**-2 * np.eye(5) + held.information
-    return Normal(normal.chi2, pull, hold), normal.chi2 + _prior(arc, held)
+    total = normal.chi2 + _prior(arc, held)
+    return Normal(normal.chi2, pull, hold), total if np.isfinite(total) else np.inf
+
+
+def _sought(arc: Arc) -> bool:
+    return bool(np.linalg.norm(arc.log_inertia) < _WIDEST)
 
 
 def _prior(arc: Arc, held: Prior) -> float:
     off = arc.log_inertia - held.centre
     wide = float(np.sum(arc.log_inertia**2)) / PRIOR_SIGMA**2
     return wide + float(off @ held.information @ off)
-
-
-def _cost(evidence: Evidence, arc: Arc, held: Prior) -> float:
-    """Chi-square with the prior, infinite where no body is looked for."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        if not np.linalg.norm(arc.log_inertia) < _WIDEST:
-            return np.inf
-        cost = evidence.chi2(*along(arc, evidence.times)) + _prior(arc, held)
-    return cost if np.isfinite(cost) else np.inf
 
 
 def _step(normal: Normal, damping: float, fixed: int) -> tuple[Array, float]:

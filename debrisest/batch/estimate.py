@@ -16,7 +16,7 @@ from debrisest.batch.local_rates import local_rates
 from debrisest.batch.motion import Motion, Status
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.rates import Rates
-from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, odd_points, pairs
+from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, odd_points, other_body, pairs
 from debrisest.batch.solve import Solution, solve
 from debrisest.batch.tracks import Tracks, tracks
 
@@ -49,6 +49,7 @@ def estimate_from_points(
         typical = 1.0
     scale = float(np.nanmax([typical, noise_of(found)]))
     kept = largest_rigid_set(found, scale)
+    other = other_body(found, scale, kept)
     tracked = tracks(times, points, typical if sigma is None else sigma)
     tracked = tracked.without(~kept)
     tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
@@ -59,12 +60,13 @@ def estimate_from_points(
         solution = _model_in_doubt(
             solve(KnownPoints(tracked, model), times, sigma is not None, near=near), plain
         )
-        return _with_points(solution, plain, whole, unit)
+        return _with_points(solution, plain, whole, other, unit)
     cloud = align_clouds(tracked)
     all_points = FreePoints(tracked, cloud.model)
     joined = cloud.tracks.seen.any(axis=0)
     wider = None if np.array_equal(joined, tracked.seen.any(axis=0)) else all_points
-    return _with_points(solve(cloud, times, sigma is not None, wider), plain, whole, unit)
+    solution = solve(cloud, times, sigma is not None, wider)
+    return _with_points(solution, plain, whole, other, unit)
 
 
 def estimate_from_attitudes(
@@ -138,7 +140,9 @@ def _noise_of_windows(evidence: Attitudes | Rates) -> float:
     return 1.0 if local is None else max(local.noise, 1e-12)
 
 
-def _with_points(solution: Solution, plain: Tracks, tracked: Tracks, unit: float) -> Motion:
+def _with_points(
+    solution: Solution, plain: Tracks, tracked: Tracks, other: BoolArray, unit: float
+) -> Motion:
     """Return the motion with places of points and which observations count."""
     evidence = solution.evidence
     assert isinstance(evidence, KnownPoints | FreePoints)
@@ -157,6 +161,7 @@ def _with_points(solution: Solution, plain: Tracks, tracked: Tracks, unit: float
         np.where(kept[:, None], evidence.model, np.nan),
         np.where(kept[:, None], sigma, np.nan),
         kept,
+        other,
         used,
         float(1.0 - used.sum() / max(tracked.seen[:, kept].sum(), 1)),
         unit,
@@ -168,8 +173,8 @@ def _without_points(solution: Solution, times: Array, unit: float) -> Motion:
     counted = solution.evidence.dof > 0.0
     used[np.searchsorted(times, solution.evidence.times)] = counted
     share = float(1.0 - np.mean(counted)) if len(counted) else 0.0
-    nothing = np.zeros((0, 3))
-    return _motion(solution, nothing, nothing, np.zeros(0, dtype=bool), used, share, unit)
+    nothing, none = np.zeros((0, 3)), np.zeros(0, dtype=bool)
+    return _motion(solution, nothing, nothing, none, none, used, share, unit)
 
 
 def _motion(
@@ -177,6 +182,7 @@ def _motion(
     points: Array,
     points_sigma: Array,
     kept: BoolArray,
+    other: BoolArray,
     used: BoolArray,
     rejected: float,
     unit: float,
@@ -187,12 +193,14 @@ def _motion(
         path=solution.path,
         arc=solution.arc,
         covariance=solution.covariance,
+        spread=solution.spread,
         fit=solution.fit,
         holds=solution.holds,
         noise=solution.noise * unit,
         points=points,
         points_sigma=points_sigma,
         kept=kept,
+        other_body=other,
         used=used,
         rejected=rejected,
         evidence=solution.evidence,

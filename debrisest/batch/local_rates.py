@@ -14,7 +14,7 @@ from debrisest.batch.evidence import Seen
 
 _LARGEST_TURN = np.radians(40.0)  # over half a window
 _FEWEST_EPOCHS = 5
-_MOST_WINDOWS = 200
+_MOST_WINDOWS = 60
 _FEWEST_WINDOWS = 12
 _REWEIGHTINGS = 3
 _CLEAN = 0.3  # of the windows, at least, without outliers

@@ -12,6 +12,7 @@ from debrisest.batch.evidence import Evidence
 from debrisest.batch.local_rates import Local
 from debrisest.batch.path import Path, path_of, unknown_path
 from debrisest.batch.smoother import Wander, smooth
+from debrisest.batch.spread import Spread
 from debrisest.outcome import Outcome
 
 
@@ -87,6 +88,8 @@ class Motion(NamedTuple):
     covariance: Array
     """Of the errors of the arc's unknowns (11, 11), NaN without an arc. That of the inertia is a
     claim only where the status is `ACCEPTED` or `ACCEPTED_IN_PART`, see `claimed`."""
+    spread: Spread | None
+    """The same as motions, None without an arc."""
     fit: Fit | None
     holds: tuple[float, float]
     """Times, s, over which the best torque-free arc explains the data."""
@@ -98,6 +101,8 @@ class Motion(NamedTuple):
     """(feature, 3), m; zero where they were given."""
     kept: BoolArray
     """Which points belong to the body (feature,)."""
+    other_body: BoolArray
+    """Which of the other points keep their distances from each other (feature,): a second body."""
     used: BoolArray
     """Which observations count: (time, feature), or (time,) without points."""
     rejected: float
@@ -122,8 +127,8 @@ class Motion(NamedTuple):
 
     def at(self, times: Array) -> Path:
         """Return the motion at any ``times (time,)``, s, increasing, with covariances."""
-        if self.arc is not None:
-            return path_of(self.arc, self.covariance, times)
+        if self.arc is not None and self.spread is not None:
+            return path_of(self.arc, self.spread, times)
         if self.evidence is None or self.local is None or self.wander is None:
             return unknown_path(times)
         return smooth(self.evidence, self.local, self.wander, times)

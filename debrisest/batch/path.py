@@ -6,9 +6,8 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import quaternion
-from debrisest.batch.arc import Arc, Course, along, course, displaced
-
-_FOURTH_MOMENT = 3.0  # of a Gaussian: mean square of a square
+from debrisest.batch.arc import RATE, TURN, UNKNOWNS, Arc, along
+from debrisest.batch.spread import Sides, Spread, halved
 
 
 class Path(NamedTuple):
@@ -23,6 +22,8 @@ class Path(NamedTuple):
     """Of the attitude, in inertial axes (time, 3, 3), rad^2."""
     rate_covariance: Array
     """(time, 3, 3), rad^2/s^2."""
+    joint: Array
+    """Of attitude, rate and inertia (time, 11, 11), NaN without a law of motion."""
 
     @property
     def turn_sigma(self) -> Array:
@@ -39,35 +40,33 @@ class Path(NamedTuple):
         return type(self)(*(part[epochs] for part in self))
 
 
-def path_of(arc: Arc, covariance: Array, times: Array) -> Path:
-    """Return torque-free motion at ``times``, with the ``covariance (11, 11)`` of its unknowns.
+def path_of(arc: Arc, spread: Spread, times: Array) -> Path:
+    """Return torque-free motion at ``times``, with what lies between the sides of a spread.
 
-    With the second order of what one sigma along each axis of the covariance does: the size of a
-    rate may be known far better than its direction, and errors then lie on a sphere, not a plane.
+    Nothing is linearised: the size of a rate may be known far better than its direction, and
+    errors then lie on a sphere, not on a plane.
     """
-    motion = course(arc, times)
-    linear = (motion.turn_by, motion.rate_by)
-    turn, rate = (
-        by @ covariance @ np.swapaxes(by, -1, -2) + _FOURTH_MOMENT * bend
-        for by, bend in zip(linear, _bends(arc, covariance, motion, times))
-    )
-    return Path(times, motion.q, motion.rate, turn, rate)
+    q, rate = along(arc, times)
+    axes, both, across = (_moved(arc, q, rate, sides, times) for sides in spread)
+    ways = np.moveaxis(np.concatenate([*axes, 0.5 * (both[1] - across[1])]), 0, 1)
+    joint = np.asarray(np.swapaxes(ways, -1, -2) @ ways)
+    return Path(times, q, rate, joint[:, TURN, TURN], joint[:, RATE, RATE], joint)
 
 
-def _bends(arc: Arc, covariance: Array, motion: Course, times: Array) -> tuple[Array, Array]:
-    """Squares (time, 3, 3) of the second order of attitude and rate."""
-    scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
-    values, axes = np.linalg.eigh(covariance / scale[:, None] / scale)
-    sides = (scale[:, None] * axes * np.sqrt(np.maximum(values, 0.0))).T
-    q, rate = along(displaced(arc, np.concatenate([sides, -sides])), times)
-    turn = quaternion.log(quaternion.multiply(q, quaternion.conjugate(motion.q)))
-    count = len(sides)
-    bends = (0.5 * (off[:count] + off[count:]) for off in (turn, rate - motion.rate))
-    of_turn, of_rate = (np.einsum("kti,ktj->tij", bend, bend) for bend in bends)
-    return of_turn, of_rate
+def _moved(arc: Arc, q: Array, rate: Array, sides: Sides, times: Array) -> tuple[Array, Array]:
+    """Half the way between the sides, and its middle, in all errors (axis, time, 11)."""
+    errors = []
+    for arcs in (sides.ahead, sides.behind):
+        other, other_rate = along(arcs, times)
+        turn = quaternion.log(quaternion.multiply(other, quaternion.conjugate(q)))
+        inertia = np.broadcast_to(
+            (arcs.log_inertia - arc.log_inertia)[:, None], (*turn.shape[:2], 5)
+        )
+        errors.append(np.concatenate([turn, other_rate - rate, inertia], axis=-1))
+    return halved(errors[0], errors[1], sides.far)
 
 
 def unknown_path(times: Array) -> Path:
     """Return a path of which nothing is known."""
-    shapes = ((4,), (3,), (3, 3), (3, 3))
+    shapes = ((4,), (3,), (3, 3), (3, 3), (UNKNOWNS, UNKNOWNS))
     return Path(times, *(np.full((len(times), *shape), np.nan) for shape in shapes))

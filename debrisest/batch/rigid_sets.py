@@ -1,4 +1,7 @@
-"""Which tracks belong to one rigid body, by the distances of pairs; and the noise these show."""
+"""Which tracks belong to one rigid body, by the distances of pairs; and the noise these show.
+
+A point among many is compared with some partners only, so that the cost grows with their number.
+"""
 
 from typing import NamedTuple
 
@@ -11,8 +14,11 @@ _TO_SIGMA = 1.4826  # from the median deviation of Gaussian noise
 _RIGID_SHARE = 0.2  # of all pairs, at least so many are rigid
 _FEWEST_COMMON = 4
 _LOOSE, _SPREAD = 1.5, 4.0  # limit of a pair's noise, and how it widens with few epochs
+_FEWEST_OF_A_BODY = 3
 _ODD = 6.0  # sigmas of a distance
 _AGREED = 0.8  # of the members that a point was seen with
+_MANY = 40  # points up to which all are compared with each other
+_MEETINGS = 10  # of one of many with partners
 
 
 class Pairs(NamedTuple):
@@ -21,30 +27,45 @@ class Pairs(NamedTuple):
     length: Array
     """Median distance, m, or that of the known body."""
     noise: Array
-    """Standard deviation of one point along the line, m, robust, NaN where seldom seen together."""
+    """Standard deviation of one point along the line, m, robust, NaN where not compared, or seldom
+    seen together."""
     common: Array
-    """Epochs in which both are seen."""
+    """Epochs in which both are seen, zero where not compared."""
 
 
 def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
     """Return how constant the distances are: about their median, or those of a known body."""
-    features = tracks.weight.shape[1]
+    seen, points = _by_feature(tracks)
+    partners = _partners(seen)
+    features = len(seen)
     length, noise = np.full((2, features, features), np.nan)
     common = np.zeros((features, features))
     for i in range(features):
-        shows = tracks.seen[:, i]
-        both = tracks.seen[shows]
-        distance = np.linalg.norm(tracks.points[shows] - tracks.points[shows, i, None], axis=-1)
-        common[i] = both.sum(axis=0)
-        enough = (common[i] >= _FEWEST_COMMON) & (np.arange(features) != i)
-        shown = np.where(both, distance, np.nan)[:, enough]
-        middle = np.nanmedian(shown, axis=0)
+        together = seen[:, seen[i]][partners[i]]
+        common[i, partners[i]] = together.sum(axis=-1)
+        enough = common[i] >= _FEWEST_COMMON
+        apart = points[enough][:, seen[i]] - points[i, seen[i]]
+        distance = np.linalg.norm(apart, axis=-1)
+        shown = np.where(seen[enough][:, seen[i]], distance, np.nan)
+        middle = _median(shown)
         if model is not None:
             middle = np.linalg.norm(model - model[i], axis=-1)[enough]
         length[i, enough] = middle
-        deviation = np.abs(shown - middle)
-        noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * np.nanmedian(deviation, axis=0)
+        noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * _median(np.abs(shown - middle[:, None]))
     return Pairs(length, noise, common)
+
+
+def _by_feature(tracks: Tracks) -> tuple[BoolArray, Array]:
+    """Return what is seen (feature, time) and where (feature, time, 3)."""
+    seen, points = tracks.seen.T, np.swapaxes(tracks.points, 0, 1)
+    return np.ascontiguousarray(seen), np.ascontiguousarray(points)
+
+
+def _median(values: Array) -> Array:
+    """Return the median of each row, of which some are NaN, but not all."""
+    ordered, count = np.sort(values, axis=-1), np.isfinite(values).sum(axis=-1)
+    rows = np.arange(len(values))
+    return np.asarray(0.5 * (ordered[rows, (count - 1) // 2] + ordered[rows, count // 2]))
 
 
 def noise_of(found: Pairs) -> float:
@@ -63,9 +84,12 @@ def largest_rigid_set(found: Pairs, sigma: float) -> BoolArray:
     """
     limit = sigma * (_LOOSE + _SPREAD / np.sqrt(np.maximum(found.common, 1.0)))
     votes = np.where(np.isfinite(found.noise), found.noise <= limit, np.nan)
-    best = np.zeros(len(votes), dtype=bool)
+    best, tried = np.zeros((2, len(votes)), dtype=bool)
     for seed in np.argsort(-np.nansum(votes, axis=1)):
+        if tried[seed]:
+            continue
         members = _grown(votes, int(seed))
+        tried |= members
         if members.sum() > best.sum():
             best = members
         if best.sum() > len(votes) / 2:
@@ -73,36 +97,66 @@ def largest_rigid_set(found: Pairs, sigma: float) -> BoolArray:
     return best
 
 
+def other_body(found: Pairs, sigma: float, body: BoolArray) -> BoolArray:
+    """Return which points (feature,) that are not of a body keep their distances: three or more."""
+    rest = np.flatnonzero(~body)
+    among = np.ix_(rest, rest)
+    members = rest[largest_rigid_set(Pairs(*(part[among] for part in found)), sigma)]
+    result = np.zeros(len(body), dtype=bool)
+    result[members] = len(members) >= _FEWEST_OF_A_BODY
+    return result
+
+
 def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
     """Return observations (time, feature) at odd distances from most others of their epoch.
 
     So wrong matches are told before any motion is known, also two that are swapped.
     """
-    odd = np.zeros(tracks.seen.shape, dtype=bool)
+    shown, points = _by_feature(tracks)
+    odd = np.zeros(shown.shape, dtype=bool)
     for _ in range(2):
-        seen = tracks.seen & ~odd
+        seen = shown & ~odd
         asked, agreed = np.zeros((2, *seen.shape))
-        for i in range(seen.shape[1]):
-            shows = seen[:, i]
-            points = tracks.points[shows]
-            distance = np.linalg.norm(points - points[:, i, None], axis=-1)
-            votes = seen[shows] & np.isfinite(found.length[i])
-            asked[shows, i] = votes.sum(axis=1)
-            close = np.abs(distance - found.length[i]) < _ODD * np.sqrt(2.0) * sigma
-            agreed[shows, i] = np.sum(votes & close, axis=1)
+        for i in range(len(seen)):
+            others = np.isfinite(found.length[i])
+            votes = seen[others][:, seen[i]]
+            asked[i, seen[i]] = votes.sum(axis=0)
+            apart = points[others][:, seen[i]] - points[i, seen[i]]
+            off = np.linalg.norm(apart, axis=-1) - found.length[i, others, None]
+            agreed[i, seen[i]] = np.sum(votes & (np.abs(off) < _ODD * np.sqrt(2.0) * sigma), axis=0)
         odd |= seen & (agreed < 0.5 * asked)
-    return odd
+    return np.asarray(odd.T)
 
 
 def _grown(votes: Array, seed: int) -> BoolArray:
     """Return the set about a point: others join, those with most agreement first."""
     members = np.zeros(len(votes), dtype=bool)
-    members[seed] = True
+    asked, agreed = np.zeros((2, len(votes)))
+    newest = seed
     while True:
-        inside = votes[:, members]
-        asked = np.isfinite(inside).sum(axis=1)
-        agreed = np.nansum(inside, axis=1)
+        members[newest] = True
+        asked += np.isfinite(votes[:, newest])
+        agreed += np.nan_to_num(votes[:, newest])
         fits = ~members & (asked > 0) & (agreed >= _AGREED * asked)
         if not fits.any():
             return members
-        members[np.argmax(np.where(fits, agreed, -1.0))] = True
+        newest = int(np.argmax(np.where(fits, agreed, -1.0)))
+
+
+def _partners(seen: BoolArray) -> BoolArray:
+    """Return which points are compared (feature, feature): all, or some that are seen together.
+
+    One of many meets others by lot at epochs that are spread over those at which it is seen.
+    """
+    features = len(seen)
+    if features <= _MANY:
+        return ~np.eye(features, dtype=bool)
+    partners = np.zeros((features, features), dtype=bool)
+    lot = np.random.default_rng(0)
+    for i in range(features):
+        epochs = np.flatnonzero(seen[i])
+        spread = np.linspace(0, len(epochs) - 1, _MEETINGS if len(epochs) else 0)
+        for epoch in epochs[spread.astype(np.int64)]:
+            partners[i, lot.choice(np.flatnonzero(seen[:, epoch]))] = True
+    np.fill_diagonal(partners, False)
+    return np.asarray(partners | partners.T)

@@ -16,7 +16,7 @@ from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import quaternion
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.local_rates import Local
-from debrisest.batch.path import Path
+from debrisest.batch.path import Path, unknown_path
 
 _UPDATES = 2  # of an epoch, each about the last
 _COARSE, _FINE = np.logspace(-6.0, 5.0, 12), np.logspace(-0.8, 0.8, 9)
@@ -92,7 +92,12 @@ def smooth(evidence: Evidence, local: Local, found: Wander, times: Array) -> Pat
     merged, _ = _merged(scaled, times)
     steps = _backward(track)
     q, motion, spread = (np.array([step[part][0] for step in steps]) for part in range(3))
-    path = Path(merged, q, motion[:, :3], spread[:, :3, :3], spread[:, 3:6, 3:6])
+    path = unknown_path(merged)._replace(
+        q=q,
+        rate=motion[:, :3],
+        turn_covariance=spread[:, :3, :3],
+        rate_covariance=spread[:, 3:6, 3:6],
+    )
     chosen = path.at(np.searchsorted(merged, np.maximum(times, merged[0])))
     for part in chosen[1:]:
         part[times < merged[0]] = np.nan

@@ -7,9 +7,10 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.batch.acceptance import Fit, tested
 from debrisest.batch.arc import Arc, along
-from debrisest.batch.curvature import with_curvature
+from debrisest.batch.curvature import spread_of
 from debrisest.batch.descent import covariance, descend
 from debrisest.batch.evidence import Evidence
+from debrisest.batch.holding import holding
 from debrisest.batch.lasting_errors import with_lasting_errors
 from debrisest.batch.local_rates import Local, local_rates
 from debrisest.batch.motion import NO_COVARIANCE, Judged, Status
@@ -19,6 +20,7 @@ from debrisest.batch.outliers import without_biased_points
 from debrisest.batch.path import Path, path_of, unknown_path
 from debrisest.batch.search import search
 from debrisest.batch.smoother import Wander, smooth, wander
+from debrisest.batch.spread import Spread
 from debrisest.batch.steady import nutates_plainly, turns_steadily
 from debrisest.batch.windows import Growth, refitted, widened
 
@@ -34,6 +36,7 @@ class Solution(NamedTuple):
     path: Path
     arc: Arc | None
     covariance: Array
+    spread: Spread | None
     fit: Fit | None
     holds: tuple[float, float]
     noise: float
@@ -94,17 +97,20 @@ def _torque_free(
     judged = _judged(fit, noise_known)
     noise = 1.0 if judged is Judged.CHI_SQUARE_AND_BLOCKS else float(np.sqrt(fit.excess))
     scaled = evidence.scaled(noise)
-    found = descend(scaled, growth.found.arc, 10)
-    spread = covariance(found.hold, evidence.unknowns_fixed)
+    found = growth.found
+    if noise != 1.0 or not found.settled:
+        found = descend(scaled, found.arc, 10)
+    linear = covariance(found.hold, evidence.unknowns_fixed)
     alone = True
-    if not nutates_plainly(scaled, found.arc, spread):
+    if not nutates_plainly(scaled, found.arc, linear):
         found, alone = lowest_minimum(scaled, found)
         alone = alone and not turns_steadily(scaled, found)
-        spread = covariance(found.hold, evidence.unknowns_fixed)
-    spread = with_curvature(scaled, found.arc, spread)
-    if alone and not possible(found.arc, spread):
+        linear = covariance(found.hold, evidence.unknowns_fixed)
+    spread = spread_of(scaled, found, linear)
+    total = spread.covariance(found.arc)
+    if alone and not possible(found.arc, total):
         return None
-    status = Status.ACCEPTED_IN_PART if lost_directions(spread) else Status.ACCEPTED
+    status = Status.ACCEPTED_IN_PART if lost_directions(total) else Status.ACCEPTED
     if not alone:
         status = Status.WITHOUT_INERTIA
     if fit.dof < _FEWEST_DOF:
@@ -115,6 +121,7 @@ def _torque_free(
         judged,
         path_of(found.arc, spread, times),
         found.arc,
+        total,
         spread,
         tested(settled, found.arc),
         growth.span,
@@ -150,8 +157,8 @@ def _any_motion(
     if noise_known:
         path = with_lasting_errors(path, evidence, found.noise)
     return Solution(
-        *(Status.NOT_TORQUE_FREE, judged, path, None, NO_COVARIANCE, growth.fit),
-        *(growth.span, found.noise, evidence, local, found),
+        *(Status.NOT_TORQUE_FREE, judged, path, None, NO_COVARIANCE, None, growth.fit),
+        *(holding(evidence, local), found.noise, evidence, local, found),
     )
 
 
@@ -165,6 +172,6 @@ def _nothing(evidence: Evidence, times: Array) -> Solution:
     span = (float(times[0]), float(times[0])) if len(times) else (np.nan, np.nan)
     judged = Judged.NOISE_UNKNOWN
     return Solution(
-        *(Status.TOO_FEW, judged, path, None, NO_COVARIANCE, None, span, np.nan),
+        *(Status.TOO_FEW, judged, path, None, NO_COVARIANCE, None, None, span, np.nan),
         *(evidence, None, None),
     )

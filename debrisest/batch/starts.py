@@ -21,10 +21,10 @@ def starts(local: Local) -> Iterator[Arc]:
     best = best_windows(local)
     inertia = inertia_start(local)
     for window in best:
-        yield _arc(local, window, inertia)
+        yield arc_of(local, window, inertia)
     for guess in inertia_guesses():
         for window in best[:2]:
-            yield _arc(local, window, guess)
+            yield arc_of(local, window, guess)
 
 
 def inertia_guesses() -> Array:
@@ -46,5 +46,6 @@ def best_windows(local: Local) -> IntArray:
     return np.array(chosen[:_MOST_WINDOWS])
 
 
-def _arc(local: Local, window: int, inertia: Array) -> Arc:
+def arc_of(local: Local, window: int, inertia: Array) -> Arc:
+    """Return an arc about the middle of a window, with log-ratios (5) of the inertia."""
     return Arc(float(local.time[window]), local.q[window], local.rate[window], inertia)

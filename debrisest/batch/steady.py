@@ -12,6 +12,7 @@ from debrisest.batch.arc import Arc
 from debrisest.batch.descent import Descent, Prior, descend
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.path import path_of
+from debrisest.batch.spread import straight
 
 _GAIN = 50.0  # of five unknowns, the best of hundreds of frequencies: about seven sigma
 _SAMPLES = 100
@@ -22,7 +23,7 @@ _SPHERE = Prior(np.zeros(5), 1e12 * np.eye(5))
 def nutates_plainly(evidence: Evidence, arc: Arc, covariance: Array) -> bool:
     """Return whether the rate changes by far more than its sigma."""
     stride = -(-len(evidence.times) // _SAMPLES)
-    path = path_of(arc, covariance, evidence.times[::stride])
+    path = path_of(arc, straight(arc, covariance), evidence.times[::stride])
     return bool(np.any(np.ptp(path.rate, axis=0) > _PLAIN * path.rate_sigma.max(axis=0)))
 
 

@@ -4,17 +4,21 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from debrisest.arrays import BoolArray
 from debrisest.batch.acceptance import Fit, tested
 from debrisest.batch.arc import Arc, along, course, moved
 from debrisest.batch.descent import Descent, covariance, descend
 from debrisest.batch.evidence import Evidence
 
 _SURE_TURN = 0.35  # rad, sigma of the attitude up to which a window may grow at once
-_LEAST_GROWTH = 0.25  # of the window's length, to each side
+_LEAST_GROWTH, _MOST_GROWTH = 0.25, 1.0  # of the window's length, to each side
+_STEPS = 7
 _WILD = 2.0  # chi2/dof of a window, in units of the noise, that has gone wrong
+_LARGEST_NOISE = 3.0  # times what was said, above which it is no noise
 _WIDER = 1.2  # by how much chi2/dof may grow with more points
 _GATE = 25.0  # normalised square, three degrees of freedom: once in 60 000 points
 _ROUNDS = 4
+_ENOUGH_EPOCHS = 150  # at least, of a window on the way
 _TAME, _WILD_SHARE = 0.8, 4.0  # share of a prediction's squares, and how many times it is wild
 _MEDIAN = 2.37  # of a chi-square of three
 _UNUSUAL = 2.0  # median square above which outliers have drawn the fit, and the gate opens
@@ -40,45 +44,57 @@ class Growth(NamedTuple):
         return self.whole and self.fit.steady and self.fit.noise_below
 
 
-def grow(evidence: Evidence, arc: Arc, half: float, gates: bool = True) -> Growth:
-    """Return the fit of the longest window that an arc, true about its epoch, explains."""
-    first, last = evidence.times[0], evidence.times[-1]
+def grow(evidence: Evidence, arc: Arc, half: float, noise: float = 1.0) -> Growth:
+    """Return the fit of the longest window that an arc, true about its epoch, explains.
+
+    ``noise`` is the factor by which that of single epochs exceeds what was said. On the way some
+    hundred epochs of a window are enough; the whole span counts all, from its middle, where the
+    information is rounder.
+    """
+    first, last = float(evidence.times[0]), float(evidence.times[-1])
     low, high = arc.epoch - half, arc.epoch + half
     good: Growth | None = None
     while True:
-        window = evidence.within((evidence.times >= low) & (evidence.times <= high))
-        found, kept = _fitted(window, arc, gates)
-        fit = tested(kept, found.arc)
         whole = low <= first and high >= last
+        arc = moved(arc, 0.5 * (first + last)) if whole else arc
+        found, kept = _fitted(evidence.within(_chosen(evidence, low, high, whole)), arc)
+        fit = tested(kept, found.arc)
         now = Growth(found, fit, kept, (max(low, first), min(high, last)), whole)
-        if fit.excess > _WILD and not (fit.steady and good is None):
+        if fit.excess > _WILD * np.clip(noise, 1.0, _LARGEST_NOISE) ** 2 and not (
+            fit.steady and good is None
+        ):
             return (good or now)._replace(whole=False)
-        good = now
         if whole:
-            return _at_middle(good)
-        arc = found.arc
+            return now
+        good, arc = now, found.arc
         low, high = _wider(evidence, found, low, high)
+
+
+def _chosen(evidence: Evidence, low: float, high: float, every: bool) -> BoolArray:
+    """Return which epochs (time,) of a window count: all, or some that are spread over it."""
+    chosen = np.zeros(len(evidence.times), dtype=bool)
+    inside = np.flatnonzero((evidence.times >= low) & (evidence.times <= high))
+    chosen[inside[:: 1 if every else max(len(inside) // _ENOUGH_EPOCHS, 1)]] = True
+    return chosen
 
 
 def refitted(evidence: Evidence, arc: Arc) -> Growth:
     """Return the fit of the whole span from an arc that is almost right."""
     first, last = float(evidence.times[0]), float(evidence.times[-1])
-    found, kept = _fitted(evidence, moved(arc, 0.5 * (first + last)), True)
+    found, kept = _fitted(evidence, moved(arc, 0.5 * (first + last)))
     return Growth(found, tested(kept, found.arc), kept, (first, last), True)
 
 
 def widened(growth: Growth, wider: Evidence) -> Growth:
     """Return the fit of more evidence over the same span, unless it disagrees."""
-    found, kept = _fitted(wider, growth.found.arc, True)
+    found, kept = _fitted(wider, growth.found.arc)
     fit = tested(kept, found.arc)
     agrees = fit.steady and fit.excess < max(_WIDER, _WIDER * growth.fit.excess)
     return growth._replace(found=found, fit=fit, evidence=kept) if agrees else growth
 
 
-def _fitted(window: AnyEvidence, arc: Arc, gates: bool) -> tuple[Descent, AnyEvidence]:
+def _fitted(window: AnyEvidence, arc: Arc) -> tuple[Descent, AnyEvidence]:
     """Return the fit of a window, first with all points, then without outliers."""
-    if not gates:
-        return descend(window, arc, 12), window
     kept = _without_wild(window, arc)
     found = descend(kept, arc, 12)
     for _ in range(_ROUNDS):
@@ -101,21 +117,13 @@ def _without_wild(window: AnyEvidence, arc: Arc) -> AnyEvidence:
 
 
 def _wider(evidence: Evidence, found: Descent, low: float, high: float) -> tuple[float, float]:
-    """Return the next window: twice as long, as far as the attitude is predicted well enough."""
+    """Return the next window: as much longer as the attitude is predicted well enough."""
     length = min(high, evidence.times[-1]) - max(low, evidence.times[0])
-    steps = np.linspace(_LEAST_GROWTH, 0.5, 6) * length
+    steps = np.linspace(_LEAST_GROWTH, _MOST_GROWTH, _STEPS) * length
     before, after = max(low, evidence.times[0]) - steps, min(high, evidence.times[-1]) + steps
     derivative = course(found.arc, np.concatenate([before, after])).turn_by
     spread = covariance(found.hold, evidence.unknowns_fixed)
     turn = derivative @ spread @ np.swapaxes(derivative, -1, -2)
-    sure = np.sqrt(np.linalg.eigvalsh(turn)[:, -1]).reshape(2, 6) < _SURE_TURN
+    sure = np.sqrt(np.linalg.eigvalsh(turn)[:, -1]).reshape(2, _STEPS) < _SURE_TURN
     below, above = (max(int(np.sum(np.cumprod(side))) - 1, 0) for side in sure)
     return float(before[below]), float(after[above])
-
-
-def _at_middle(growth: Growth) -> Growth:
-    """Return the same fit with the unknowns of the middle epoch, whose information is rounder."""
-    low, high = growth.span
-    arc = moved(growth.found.arc, 0.5 * (low + high))
-    found = descend(growth.evidence, arc, 10)
-    return growth._replace(found=found, fit=tested(growth.evidence, found.arc))

@@ -19,6 +19,7 @@ from debrisest.cli.measured import (
     Points,
     RateHz,
     SigmaDeg,
+    SigmaDegS,
 )
 from debrisest.cli.options import RESULTS, Force, Quiet
 from debrisest.cli.stages import bring
@@ -39,13 +40,14 @@ def estimate(
     noise_m: NoiseM = None,
     noise_px: NoisePx = None,
     sigma_deg: SigmaDeg = None,
+    sigma_deg_s: SigmaDegS = None,
     out: Annotated[
         Path | None, Option("--out", help="Folder to write to (default: results/<stem>).")
     ] = None,
     force: Force = False,
     quiet: Quiet = False,
 ) -> None:
-    """Estimate the motion of the body in a file of tracks or poses, and print the answer.
+    """Estimate the motion of the body in a file of tracks, poses or rates, and print the answer.
 
     The scenario that is written with it does the same through sweep.
     """
@@ -61,6 +63,7 @@ def estimate(
         "noise_m": noise_m,
         "noise_px": noise_px,
         "sigma_deg": sigma_deg,
+        "sigma_deg_s": sigma_deg_s,
     }
     folder = out or RESULTS / (file.stem if file.is_file() else file.resolve().name)
     folder = folder if folder.name not in ("", "..") else folder.resolve()

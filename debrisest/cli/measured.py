@@ -10,7 +10,7 @@ from debrisest.cli.inputs import load_all
 from debrisest.cli.options import Plugins
 
 Measured = Annotated[
-    Path, Argument(help="Tracks or poses: CSV, JSON, a folder of COLMAP.", metavar="FILE")
+    Path, Argument(help="Tracks, poses or rates: CSV, JSON, a folder of COLMAP.", metavar="FILE")
 ]
 Points = Annotated[Path | None, Option("--points", help="Known geometry: feature,x_m,y_m,z_m.")]
 Cameras = Annotated[list[Path] | None, Option("--camera", help="Calibration (repeatable).")]
@@ -22,6 +22,7 @@ ImageTimes = Annotated[Path | None, Option("--image-times", help="filename,time_
 NoiseM = Annotated[float | None, Option("--noise-m", help="Of points, where the file has none.")]
 NoisePx = Annotated[float | None, Option("--noise-px", help="Of pixels.")]
 SigmaDeg = Annotated[float | None, Option("--sigma-deg", help="Of poses that have none.")]
+SigmaDegS = Annotated[float | None, Option("--sigma-deg-s", help="Of rates that have none.")]
 
 
 def import_(
@@ -38,6 +39,7 @@ def import_(
     noise_m: NoiseM = None,
     noise_px: NoisePx = None,
     sigma_deg: SigmaDeg = None,
+    sigma_deg_s: SigmaDegS = None,
     out: Annotated[
         Path | None, Option("--out", help="Folder to write to (default: that of the file).")
     ] = None,
@@ -56,6 +58,7 @@ def import_(
         "noise_m": noise_m,
         "noise_px": noise_px,
         "sigma_deg": sigma_deg,
+        "sigma_deg_s": sigma_deg_s,
     }
     like = load_all([scenario], None, plugins)[0] if scenario else None
     done = import_measured(file, options, like, out, force)

@@ -13,6 +13,7 @@ Text = dict[str, Any]
 _HELD = {
     "measured_point": "points",
     "measured_q_if": "attitudes",
+    "measured_rate_f": "rates",
     "measured_pixel": "pixels",
     "measured_range": "ranges",
     "landmark_range": "ranges",
@@ -41,6 +42,8 @@ def _default_estimator(data: Data) -> Text:
         recovery = "pixel_pose" if known else "triangulation" if cameras > 1 else None
     if "measured_q_if" in data or recovery == "pixel_pose":
         problem["measured"] = "attitudes"
+    elif "measured_rate_f" in data:
+        problem["measured"] = "rates"
     elif "measured_point" not in data and recovery is None:
         raise UserError(_serves_nothing(data))
     elif not known:

@@ -8,11 +8,14 @@ from typing import Any, NamedTuple
 import yaml
 
 from debrisest.arrays import Data
+from debrisest.catalog import kind_of
 from debrisest.errors import UserError
 from debrisest.files import replacing
 from debrisest.measured.default_scenario import Text, default_scenario
 from debrisest.measured.scenario_like import known_geometry, scenario_like
+from debrisest.parts.sources.from_files import FromFile
 from debrisest.parts.sources.poses import MeasuredPoses
+from debrisest.parts.sources.rates import MeasuredRates
 from debrisest.parts.sources.tracks import MeasuredTracks
 from debrisest.results import store
 from debrisest.roles import SourcePart
@@ -22,7 +25,11 @@ from debrisest.scenario.mistakes import validated
 from debrisest.scenario.schema import measured_model
 from debrisest.tracks.recognise import Kind, recognise
 
-_POSES = (Kind.POSES, Kind.POSE_LIST)
+_PARTS: dict[Kind, type[FromFile]] = {
+    Kind.POSES: MeasuredPoses,
+    Kind.POSE_LIST: MeasuredPoses,
+    Kind.RATES: MeasuredRates,
+}
 _HEAD = """\
 # Measured data of {source}, as debrisest import has read them; {estimators}.
 #   debrisest sweep {name}
@@ -44,8 +51,8 @@ def measured_keys(file: Path, options: Mapping[str, Any]) -> Text:
     ``options`` are its further keys; those without a value are left out, paths stay as they are.
     Raises `UserError` for a file that is not known, and for keys of no use for it.
     """
-    kind = "poses" if recognise(file)[0] in _POSES else "tracks"
-    part = MeasuredPoses if kind == "poses" else MeasuredTracks
+    part = _PARTS.get(recognise(file)[0], MeasuredTracks)
+    kind = kind_of(part)
     given = {key: value for key, value in options.items() if value not in (None, [])}
     if useless := [key for key in given if key not in part.model_fields]:
         names = ", ".join(f"--{key.replace('_', '-')}" for key in useless)

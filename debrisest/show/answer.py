@@ -129,7 +129,9 @@ def _points(data: Data) -> str:
         text += f", 1 sigma {typical:.2g} m per axis (largest {worst:.2g} m)"
     elif found.any():
         text += ", places given"
-    return text + f"; left out: {', '.join(lost)}" * bool(lost)
+    other = [name for name, there in zip(names, data.get("on_other_body", ())) if there]
+    told_of = f"; a second rigid body, which is not estimated: {', '.join(other)}" * bool(other)
+    return text + f"; left out: {', '.join(lost)}" * bool(lost) + told_of
 
 
 def _rejected(data: Data) -> str:

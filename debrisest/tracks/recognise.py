@@ -5,6 +5,7 @@ from pathlib import Path
 
 from debrisest.errors import UserError
 from debrisest.tracks.colmap_files import FILES
+from debrisest.tracks.rates import COLUMNS
 from debrisest.tracks.rows import POINT
 from debrisest.tracks.sheet import Sheet, open_sheet
 from debrisest.tracks.text import read_text
@@ -17,6 +18,7 @@ class Kind(Enum):
     LONG = "tracks, a row for each feature: time_s,feature with x_m,y_m,z_m, u_px,v_px or range_m"
     WIDE = "tracks, a row for each time: time_s,p1_x_m,p1_y_m,p1_z_m,p2_x_m,..."
     POSES = "poses: time_s,q0,q1,q2,q3 with x_m,y_m,z_m and sigma_deg if known"
+    RATES = "rates in body axes: time_s,rate_x_deg_s,rate_y_deg_s,rate_z_deg_s (or rad_s)"
     POSE_LIST = "poses in JSON: a list of filename, q_vbs2tango, r_Vo2To_vbs"
     COLMAP = f"a folder with a COLMAP text model: {', '.join(FILES)}"
 
@@ -45,6 +47,8 @@ def _table(sheet: Sheet) -> Kind:
         return Kind.LONG
     if len(names & {"q0", "q1", "q2", "q3", "qw", "qx", "qy", "qz", "q_w", "q_x", "sigma_deg"}) > 1:
         return Kind.POSES
+    if len(names & COLUMNS) > 1:
+        return Kind.RATES
     if is_wide(sheet.names):
         return Kind.WIDE
     header = ", ".join(sheet.names)[:100]

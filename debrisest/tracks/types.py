@@ -48,6 +48,19 @@ class Poses:
 
 
 @dataclass(frozen=True)
+class Rates:
+    """Rates ``rate (epoch, 3)``, rad/s, in axes fixed in the body, with ``sigma (epoch,)`` of each
+    component, if given."""
+
+    source: str
+    times: Array
+    rate: Array
+    lines: IntArray
+    sigma: Array | None = None
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class BodyPoints:
     """Known geometry: ``points (feature, 3)``, m, in body axes."""
 

@@ -95,9 +95,8 @@ def test_a_slow_slope_below_the_noise_is_not_torque_free(tumbling) -> None:
 
 def test_sigma_of_the_inertia_follows_the_noise(tumbling) -> None:
     sigmas = []
-    for sigma in (0.01, 0.04):
+    for sigma in (0.0005, 0.002):
         q = noisy(tumbling, np.random.default_rng(6), sigma)
         motion = estimate_from_attitudes(tumbling.times, q, sigma)
         sigmas.append(inertia_directions(motion.covariance)[0])
-    firm = [0, 1, 3, 4]  # along the other the valley bends
-    np.testing.assert_allclose((sigmas[1] / sigmas[0])[firm], 4.0, rtol=0.1)
+    np.testing.assert_allclose(sigmas[1] / sigmas[0], 4.0, rtol=0.1)

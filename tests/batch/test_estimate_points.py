@@ -122,6 +122,7 @@ def test_the_larger_of_two_bodies_is_kept(tumbling, body_of, box) -> None:
     motion = estimate_from_points(tumbling.times, both, 0.03)
     assert motion.status.accepted
     assert motion.kept.tolist() == [True] * 8 + [False] * 5
+    assert np.array_equal(motion.other_body, ~motion.kept)
 
 
 def test_a_steady_spin_shows_attitude_and_not_inertia(body_of, box) -> None:

@@ -41,3 +41,32 @@ def test_swapped_points_are_odd(tumbling) -> None:
         odd[k, [first, second]] = True
     tracked = tracks(tumbling.times, points, 0.02)
     assert np.array_equal(odd_points(tracked, pairs(tracked), 0.02), odd)
+
+
+def test_many_points_of_two_bodies_are_told_apart_by_some_of_their_pairs(tumbling) -> None:
+    """Of 120 points, 50 belong to a body that turns the other way; one is never seen."""
+    rng = np.random.default_rng(4)
+    model = rng.normal(size=(120, 3))
+    axes = tumbling.attitude.as_matrix()
+    points = np.einsum("kij,cj->kci", axes, model)
+    points[:, :50] = np.einsum("kji,cj->kci", axes, model[:50])
+    points += 0.02 * rng.normal(size=points.shape)
+    points[rng.uniform(size=points.shape[:2]) < 0.5] = np.nan
+    points[:, 60] = np.nan
+    tracked = tracks(tumbling.times, points, 0.02)
+    found = pairs(tracked)
+    expected = (np.arange(120) >= 50) & (np.arange(120) != 60)
+    assert np.array_equal(largest_rigid_set(found, 0.02), expected)
+    assert np.isfinite(found.length).sum() < 60 * 120
+
+
+def test_wrong_matches_among_many_points_are_odd(tumbling) -> None:
+    rng = np.random.default_rng(5)
+    points = np.einsum("kij,cj->kci", tumbling.attitude.as_matrix(), rng.normal(size=(90, 3)))
+    points += 0.02 * rng.normal(size=points.shape)
+    odd = rng.uniform(size=points.shape[:2]) < 0.02
+    points[odd] += 1.0
+    tracked = tracks(tumbling.times, points, 0.02)
+    found = odd_points(tracked, pairs(tracked), 0.02)
+    assert np.mean(found[odd]) > 0.99
+    assert np.mean(found[~odd]) < 1e-3

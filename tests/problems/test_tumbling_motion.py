@@ -156,7 +156,7 @@ def test_rates_alone_give_inertia_and_no_attitude_of_their_own(measured) -> None
     rates = measured["true_rate"] + sigma * rng.normal(size=(3, *measured["true_rate"].shape))
     data = {
         "run": np.arange(3), "time_s": measured["time_s"], "measured_rate_f": rates,
-        "rate_noise": np.full(3, sigma),
+        "rate_f_noise": np.full(rates.shape[:2], sigma),
     }  # fmt: skip
     found, _ = estimated(data, measured="rates")
     assert np.all(found["accepted"] == 1)

@@ -72,6 +72,13 @@ def test_all_that_is_known() -> None:
     ]
 
 
+def test_a_second_body_is_told_by_its_points() -> None:
+    found = lines(made(on_other_body=np.array([0.0, 0.0, 1.0])))
+    assert found["points"].endswith(
+        "left out: flag; a second rigid body, which is not estimated: flag"
+    )
+
+
 @pytest.mark.parametrize("status", Status)
 @pytest.mark.parametrize("flag", [0.0, 1.0, np.nan])
 def test_the_first_line_says_whether_it_is_accepted(status: Status, flag: float) -> None:

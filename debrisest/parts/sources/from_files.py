@@ -16,16 +16,32 @@ from debrisest.tracks.colmap import ColmapModel
 from debrisest.tracks.frames import read_times
 from debrisest.tracks.read import read_measured
 from debrisest.tracks.sheet import open_sheet
-from debrisest.tracks.types import Poses, Tracks
+from debrisest.tracks.types import Poses, Rates, Tracks
 from debrisest.vocabulary import VOCABULARY
 
 _INERTIAL = "no attitude of the chaser is given: the axes measured in are taken for inertial ones"
 
 
-class FromFiles(SourcePart):
+class FromFile(SourcePart):
     """One run from text files; the paths count from the scenario's folder."""
 
     file: str
+
+    @property
+    def files(self) -> list[str]:
+        """Return all files, and folders of files, that this very part reads."""
+        return [self.file]
+
+    def digest(self, folder: Path) -> str:
+        """Return the SHA-256 of all files."""
+        return sha256(
+            b"".join(map(_checksum, _each(folder / name for name in self.files)))
+        ).hexdigest()
+
+
+class FromFiles(FromFile):
+    """What is measured by a chaser, whose attitude may be given."""
+
     attitude: str | None = Field(None, description="the chaser's attitude: time_s,q0,q1,q2,q3")
     rate_hz: Positive | None = Field(None, description="of images that have no times")
     image_times: str | None = Field(None, description="times of images: filename,time_s")
@@ -35,16 +51,13 @@ class FromFiles(SourcePart):
         """Return all files, and folders of files, that this very part reads."""
         return [name for name in (self.file, self.attitude, self.image_times) if name]
 
-    def digest(self, folder: Path) -> str:
-        """Return the SHA-256 of all files."""
-        return sha256(
-            b"".join(map(_checksum, _each(folder / name for name in self.files)))
-        ).hexdigest()
-
     def measured(self, folder: Path) -> Tracks | Poses | ColmapModel:
         """Return what the file holds, as the readers know it."""
         times = read_times(open_sheet(folder / self.image_times)) if self.image_times else None
-        return read_measured(folder / self.file, self.rate_hz, times)
+        found = read_measured(folder / self.file, self.rate_hz, times)
+        if isinstance(found, Rates):
+            raise UserError(f"{found.source}: this file holds rates; use kind: rates")
+        return found
 
     def attitude_of_chaser(
         self, folder: Path, times: Array

@@ -16,5 +16,7 @@ QUANTITIES = {
     "measured_q_if_covariance": Quantity(
         (*TIME, "row", "column"), "rad2", "covariance of the turn, inertial axes"
     ),
+    "measured_rate_f": Quantity(TIME_VECTOR, "rad/s", "measured rate, in axes fixed in the body"),
+    "rate_f_noise": Quantity(TIME, "rad/s", "1-sigma of it about each axis; NaN if not known"),
     "measured_position": Quantity(TIME_VECTOR, "m", "origin of the body's axes, from the chaser"),
 }

@@ -133,8 +133,8 @@ def _from_attitudes(data: Data, times: Array, run: int, count: int, near: Arc | 
 
 
 def _from_rates(data: Data, times: Array, run: int, count: int, near: Arc | None) -> Motion:
-    noise = data["rate_noise"][run]
-    given = None if np.isnan(noise) else float(noise)
+    sigma = data["rate_f_noise"][run, :count]
+    given = None if np.isnan(sigma).all() else sigma
     return estimate_from_rates(times[:count], data["measured_rate_f"][run, :count], given, near)
 
 

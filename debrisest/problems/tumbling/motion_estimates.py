@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
-from debrisest.batch.arc import INERTIA, RATE, TURN, UNKNOWNS, Arc, course, moved
+from debrisest.batch.arc import INERTIA, RATE, TURN, UNKNOWNS, moved
 from debrisest.batch.derived import LOOSEST_AXIS, derived
 from debrisest.batch.motion import Motion
 from debrisest.batch.observability import lost_directions
@@ -71,24 +71,13 @@ def _states(motion: Motion, path: Path) -> Array:
 
 def _along(motion: Motion, path: Path) -> Array:
     """Covariance (time, 11, 11) of attitude, rate and inertia; NaN of what is not claimed."""
-    result = np.full((len(path.times), UNKNOWNS, UNKNOWNS), np.nan)
-    result[:, TURN, TURN], result[:, RATE, RATE] = path.turn_covariance, path.rate_covariance
     if motion.arc is None:
+        result = path.joint.copy()
+        result[:, TURN, TURN], result[:, RATE, RATE] = path.turn_covariance, path.rate_covariance
         return result
     plain = np.eye(UNKNOWNS)
     plain[INERTIA, INERTIA] = _TO_PLAIN
-    by = _transitions(motion.arc, path.times)
-    claimed = motion.claim(by @ motion.covariance @ np.swapaxes(by, -1, -2))
-    claimed[:, TURN, TURN], claimed[:, RATE, RATE] = path.turn_covariance, path.rate_covariance
-    return plain @ claimed @ plain.T
-
-
-def _transitions(arc: Arc, times: Array) -> Array:
-    """Derivative (time, 11, 11) of the errors at the times by those of the arc's unknowns."""
-    motion = course(arc, times)
-    result = np.broadcast_to(np.eye(UNKNOWNS), (len(times), UNKNOWNS, UNKNOWNS)).copy()
-    result[:, TURN], result[:, RATE] = motion.turn_by, motion.rate_by
-    return result
+    return np.asarray(plain @ motion.claim(path.joint) @ plain.T)
 
 
 def _said(motion: Motion) -> str:
@@ -126,7 +115,7 @@ def _points(motion: Motion) -> Data:
         return {}
     used = np.asarray(float(motion.kept.sum()))
     points = {"point_f": motion.points, "point_f_sigma": motion.points_sigma}
-    return points | {"features_used": used}
+    return points | {"features_used": used, "on_other_body": motion.other_body.astype(np.float64)}
 
 
 def _at_end(motion: Motion, times: Array) -> Data:
@@ -142,8 +131,7 @@ def _at_end(motion: Motion, times: Array) -> Data:
     if motion.arc is None or not motion.status.accepted:
         return {name: np.asarray(value, dtype=np.float64) for name, value in result.items()}
     arc = moved(motion.arc, float(times[-1]))
-    by = _transitions(motion.arc, times[-1:])[0]
-    found = derived(arc, motion.claim(by @ motion.covariance @ by.T))
+    found = derived(arc, motion.claim(motion.path.joint[-1]))
     result |= {
         "spin_axis_i": found.spin_axis.value,
         "spin_axis_i_sigma": found.spin_axis.sigma,

@@ -40,6 +40,9 @@ QUANTITIES = {
     "accepted_and_wrong": Quantity(RUN, "1", "accepted, and not within five of its sigmas", "1"),
     "missed": Quantity(RUN, "1", "startable, but not accepted and right", "1"),
     "features_used": Quantity(RUN, "1", "features that belong to the body, where it has them", "1"),
+    "on_other_body": Quantity(
+        ("run", "feature"), "1", "1 for features left out that are one rigid body themselves"
+    ),
     "lost_directions": Quantity(
         *(RUN, "1", "numbers of the inertia, of five, that the motion does not show", "1"),
         after_figure=" of 5 unobservable",

@@ -1,0 +1,115 @@
+"""How far an arc may be off, as motions to both sides of it.
+
+Least squares that bend have no covariance that holds at all times and for all quantities. So each
+axis of the errors is told by two arcs some sigmas away to either side, each of which explains the
+data as well as its number of sigmas says. What lies between them follows, in whatever quantity, at
+whatever time: half their difference, and how far their middle is off.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.attitude import quaternion
+from debrisest.batch.arc import Arc, displaced
+
+FAR = 3.0
+"""Sigmas at which the sides are looked for: what is claimed within three holds within three."""
+
+
+class Sides(NamedTuple):
+    """Two arcs for each axis of the errors."""
+
+    ahead: Arc
+    """Of each axis (axis, ...)."""
+    behind: Arc
+    far: Array
+    """How many sigmas these are away (2, axis)."""
+
+    @classmethod
+    def straight(cls, arc: Arc, axes: Array) -> Self:
+        """Return sides at `FAR` times the ``axes (axis, 11)``, of one sigma each."""
+        far = np.full((2, len(axes)), FAR)
+        return cls(displaced(arc, FAR * axes), displaced(arc, -FAR * axes), far)
+
+    def replaced(self, axis: int, ahead: tuple[Arc, float], behind: tuple[Arc, float]) -> Self:
+        """Return the sides with others, and how far they are, along one axis."""
+        far = self.far.copy()
+        far[:, axis] = ahead[1], behind[1]
+        return type(self)(
+            _with(self.ahead, axis, ahead[0]), _with(self.behind, axis, behind[0]), far
+        )
+
+    def joined(self, other: Self) -> Self:
+        """Return the sides of both."""
+        return type(self)(
+            _joined(self.ahead, other.ahead),
+            _joined(self.behind, other.behind),
+            np.concatenate([self.far, other.far], axis=1),
+        )
+
+    def moved(self, arc: Arc) -> tuple[Array, Array]:
+        """Return half the way between the sides (axis, 11) and its middle, per sigma."""
+        return halved(shift(arc, self.ahead), shift(arc, self.behind), self.far)
+
+
+class Spread(NamedTuple):
+    """All axes of an arc's errors, and what two of them do together."""
+
+    axes: Sides
+    along: Sides
+    """Half way between two axes (pair, ...), and across: half way between one and the other's
+    behind."""
+    across: Sides
+
+    def covariance(self, arc: Arc) -> Array:
+        """Return that of the errors of the unknowns (11, 11)."""
+        half, middle = self.axes.moved(arc)
+        twist = 0.5 * (self.along.moved(arc)[1] - self.across.moved(arc)[1])
+        ways = np.concatenate([half, middle, twist])
+        return np.asarray(ways.T @ ways)
+
+
+def straight(arc: Arc, covariance: Array) -> Spread:
+    """Return the spread of a ``covariance (11, 11)`` that bends nowhere."""
+    none = Sides.straight(arc, np.zeros((0, 11)))
+    return Spread(Sides.straight(arc, principal_ways(covariance)), none, none)
+
+
+def principal_ways(covariance: Array) -> Array:
+    """Return independent errors (axis, n) of one sigma each, whatever the units."""
+    scale = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
+    values, axes = np.linalg.eigh(covariance / scale[:, None] / scale)
+    return np.asarray((scale[:, None] * axes * np.sqrt(np.maximum(values, 0.0))).T)
+
+
+def halved(ahead: Array, behind: Array, far: Array) -> tuple[Array, Array]:
+    """Return half of the way (axis, ..., n) from behind to ahead and its middle, per sigma."""
+    shape = (2, -1, *[1] * (ahead.ndim - 1))
+    up, down = np.stack([ahead, behind]) / far.reshape(shape)
+    return 0.5 * (up - down), 0.5 * (up + down)
+
+
+def shift(arc: Arc, others: Arc) -> Array:
+    """Return the errors (axis, 11) that take the arc to others."""
+    turn = quaternion.log(quaternion.multiply(others.q, quaternion.conjugate(arc.q)))
+    changes = others.rate - arc.rate, others.log_inertia - arc.log_inertia
+    return np.concatenate([turn, *changes], axis=-1)
+
+
+def stacked(arcs: Sequence[Arc]) -> Arc:
+    """Return arcs of one epoch as copies (arc, ...) of one."""
+    return Arc(arcs[0].epoch, *(np.stack(parts) for parts in zip(*(arc[1:] for arc in arcs))))
+
+
+def _joined(first: Arc, second: Arc) -> Arc:
+    return Arc(first.epoch, *(np.concatenate(pair) for pair in zip(first[1:], second[1:])))
+
+
+def _with(arcs: Arc, axis: int, arc: Arc) -> Arc:
+    parts = [part.copy() for part in arcs[1:]]
+    for part, new in zip(parts, arc[1:]):
+        part[axis] = new
+    return Arc(arcs.epoch, *parts)
