@@ -39,7 +39,7 @@ def self_tests(task: Problem, arc: Arc) -> list[SelfTest]:
     """Return the tests of all runs."""
     best = arc.found.best
     return [
-        *_of_the_fit(task, best),
+        *_of_the_fit(task, arc),
         rival_test(
             arc.found.gap,
             _DECISIVE,
@@ -54,12 +54,19 @@ def self_tests(task: Problem, arc: Arc) -> list[SelfTest]:
     ]
 
 
-def _of_the_fit(task: Problem, best: Fit) -> Iterator[SelfTest]:
+def _of_the_fit(task: Problem, arc: Arc) -> Iterator[SelfTest]:
     """Whether there is a solution at all."""
+    best = arc.found.best
     yield lost_test(
         confirmed(best).sum(-1) < _FEWEST,
         f"fewer than {_FEWEST} landmarks are confirmed, which hardly tell the motion; longer "
         "tracks or fewer false matches are needed",
+    )
+    before, left = (seen.common_seen.sum((1, 2)) for seen in (task.observed, arc.observed))
+    yield lost_test(
+        left < 0.5 * before,
+        "most ranges disagree with the images: are they those to the centre of mass, and is their "
+        "noise what it is said to be?",
     )
     yield lost_test(
         ~(np.isfinite(best.found.value) & (best.found.ratio < _NO_FIT) & task.batch.agrees(best)),

@@ -145,13 +145,14 @@ def _exact(task: Problem, begun: Fit, end: int) -> tuple[Fit, Observations]:
     The cost counts for each sighting that is left out what it is left out for.
     """
     model, batch, observed = task.model, task.batch, task.observed
+    runs = np.arange(len(task.parameters))
+    begun = take(begun, runs)
     at, prior = place(model, observed, begun.at, begun.prior, end)
     if batch.robust:
         begun = _thin(task, begun, end)
         at, prior = begun.at, begun.prior
         observed = without_far(model, observed, at, end)
-    runs = np.arange(len(task.parameters))
-    result = take(begun._replace(at=at, prior=prior), runs)
+    result = begun._replace(at=at, prior=prior)
     for _ in range(_ROUNDS):
         part, begin = task.of(runs), take(result, runs)
         new = descend_on(

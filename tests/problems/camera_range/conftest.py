@@ -39,7 +39,6 @@ class Started(NamedTuple):
     sentence: np.ndarray
     restarts: np.ndarray
     ratio: np.ndarray
-    cost: np.ndarray
 
 
 class Experiment(NamedTuple):
@@ -72,7 +71,6 @@ class Experiment(NamedTuple):
             sentence=said.sentence,
             restarts=arc.found.restarts,
             ratio=arc.found.best.found.ratio,
-            cost=arc.found.best.found.value,
         )
 
     def filtered(self, started: Started, **rule):
