@@ -44,6 +44,8 @@ class Rivals(NamedTuple):
     best: Fit
     other: Fit
     restarts: IntArray
+    settled: BoolArray
+    """Whether a restart has ended in the same place (run,): what does not fit is the model."""
 
     @property
     def gap(self) -> Array:
@@ -89,23 +91,25 @@ def batch_problem(
 def batch_start(task: Problem) -> Rivals:
     """Estimate the start of every run from its first windows, twice where its mirror fits, too."""
     parameters, batch = task.parameters, task.batch
-    found = Rivals(*_solve(task, parameters), np.zeros(len(parameters), dtype=np.int64))
+    runs = len(parameters)
+    none = np.zeros(runs, dtype=np.int64), np.zeros(runs, dtype=np.bool_)
+    found = Rivals(*_solve(task, parameters), *none)
     for attempt in range(batch.restarts):
-        bad = np.flatnonzero(~batch.accepts(found.best))
+        bad = np.flatnonzero(~batch.accepts(found.best) & ~found.settled)
         if len(bad) == 0:
             break
         part = task.of(bad)
-        new = Rivals(*_solve(part, _redrawn(part, attempt)), np.full(len(bad), attempt + 1))
-        adopt(found, bad, new)
+        adopt(found, bad, *_solve(part, _redrawn(part, attempt)))
     return found
 
 
-def adopt(found: Rivals, runs: IntArray, new: Rivals) -> IntArray:
+def adopt(found: Rivals, runs: IntArray, best: Fit, other: Fit) -> IntArray:
     """Put new solutions of some runs in the place of worse ones; return which, and count."""
-    won = np.flatnonzero(new.best.found.value < found.best.found.value[runs])
-    put(found.best, runs[won], take(new.best, won))
-    put(found.other, runs[won], take(new.other, won))
-    found.restarts[runs] = new.restarts
+    found.restarts[runs] += 1
+    found.settled[runs] = _same(take(found.best, runs), best)
+    won = np.flatnonzero(best.found.value < found.best.found.value[runs])
+    put(found.best, runs[won], take(best, won))
+    put(found.other, runs[won], take(other, won))
     return won
 
 

@@ -73,7 +73,7 @@ def whole_arc(task: Problem, ends: Sequence[int]) -> Arc:
     for i, end in enumerate(ends):
         before = take(found, np.arange(len(task.parameters)))
         found, observed = _over(task, found, end)
-        _again(task, found, observed, before, ends[: i + 1])
+        observed = _again(task, found, observed, before, ends[: i + 1])
         fits.append(found.best)
         anchors.append(_anchor(task.model, found.best, end))
     return Arc(found, observed, anchors, fits)
@@ -89,7 +89,7 @@ def _over(task: Problem, found: Rivals, end: int) -> tuple[Rivals, Observations]
     if len(alive):
         put(rest, alive, _exact(task.of(alive), take(found.other, alive), end)[0])
     swapped = rest.found.value < best.found.value
-    found = Rivals(*ordered(best, rest), found.restarts)
+    found = Rivals(*ordered(best, rest), found.restarts, found.settled)
     if swapped.any():
         observed = without_far(task.model, task.observed, found.best.at, end)
     return found, observed
@@ -97,13 +97,17 @@ def _over(task: Problem, found: Rivals, end: int) -> tuple[Rivals, Observations]
 
 def _again(
     task: Problem, found: Rivals, observed: Observations, before: Rivals, ends: Sequence[int]
-) -> None:
-    """Begin anew, in place, the runs that do not fit: from mirrors, then from other guesses."""
+) -> Observations:
+    """Begin anew, in place, the runs that do not fit: from mirrors, then from other guesses.
+
+    Returns what is left of the frames.
+    """
     batch = task.batch
     for attempt in range(batch.restarts):
-        bad = np.flatnonzero(~batch.accepts(found.best) & (found.restarts <= attempt))
+        open_still = (found.restarts <= attempt) & ~found.settled
+        bad = np.flatnonzero(~batch.accepts(found.best) & open_still)
         if len(bad) == 0:
-            return
+            break
         part = task.of(bad)
         if attempt == 0 and batch.mirrored:
             new = _from_mirror(part, take(before.best, bad))
@@ -114,8 +118,9 @@ def _again(
         new, kept = _exact(part, _thin(part, new, ends[-1]), ends[-1])
         rest = take(new, np.arange(len(bad)))
         rest.found.value[:] = np.inf
-        won = adopt(found, bad, Rivals(new, rest, np.full(len(bad), attempt + 1)))
-        put(observed, bad[won], kept.at(won))
+        won = adopt(found, bad, new, rest)
+        observed = _replaced(observed, bad[won], kept.at(won))
+    return observed
 
 
 def _from_mirror(task: Problem, best: Fit) -> Fit:
