@@ -1,7 +1,7 @@
 """What an estimate says of itself: tests that see what the size of the innovations does not.
 
-Every test compares a statistic of each run with what a right model and a converged estimate would
-give by chance once in a million times. One that fails has a sentence; the worst of them decides.
+Every test compares a statistic of each run with what a right model and a converged estimate give
+by chance once in some ten thousand times at most. One that fails has a sentence; the worst decides.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,9 @@ from debrisest.filters.status import FilterStatus, ReplayStatus
 from debrisest.outcome import Outcome
 
 _SIGMAS = 5.0
-"""Of a chi-square distribution taken as a normal one, and of a normal one."""
+"""Whose probability, of a normal distribution, is that of a square that is too large."""
+_SIGMAS_OF_SCORES = 4.0
+"""Of a normal distribution, once in 16 000 times."""
 
 
 class Verdict(Outcome):
@@ -159,7 +161,7 @@ def score_test(value: Array, sigma: Array, reason: str, scale: float = 1.0) -> S
 
     ``reason`` may use ``{value}``, which is in sigmas, and ``{size}``, the value times ``scale``.
     """
-    return SelfTest(np.abs(value) / sigma, _SIGMAS, reason, size=scale * value)
+    return SelfTest(np.abs(value) / sigma, _SIGMAS_OF_SCORES, reason, size=scale * value)
 
 
 def bend_test(rise: Array) -> SelfTest:
@@ -182,8 +184,11 @@ def lost_test(lost: BoolArray, reason: str) -> SelfTest:
 
 
 def _mean_limit(dof: Array | IntArray) -> Array:
-    """Largest square per degree of freedom, (run,)."""
-    return np.asarray(1.0 + _SIGMAS * np.sqrt(2.0 / np.maximum(dof, 1)))
+    """Largest square per degree of freedom, (run,): of many, ``1 + 5 sqrt(2 / dof)``."""
+    from scipy.stats import chi2, norm
+
+    count = np.maximum(dof, 1)
+    return np.asarray(chi2.isf(norm.sf(_SIGMAS), count) / count)
 
 
 def _relative(part: Array, whole: Array) -> Array:
