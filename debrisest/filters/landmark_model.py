@@ -47,6 +47,15 @@ class Observations(NamedTuple):
         return Observations(*parts)
 
 
+class Doubt(NamedTuple):
+    """A parameter that a model holds at zero, and what it means that the data pull it away."""
+
+    reason: str
+    """With ``{value}``, in sigmas, and ``{size}``, what it would be."""
+    scale: float
+    """From radians and the like to the unit of the reason."""
+
+
 class LandmarkModel(NamedTuple):
     """A deterministic motion of a *core* state and of N points that are constant vectors.
 
@@ -91,6 +100,10 @@ class LandmarkModel(NamedTuple):
     """(core, reference) -> error with which `retract` takes the reference there."""
     of: Callable[[IntArray], "LandmarkModel"]
     """The model of some of the runs, any number of times each."""
+    doubts: tuple[Doubt, ...] = ()
+    """What the model takes for granted."""
+    doubted: Callable[[], "LandmarkModel"] | None = None
+    """The model in which each doubt is one more error of the core, and one more parameter."""
     directions: int = 2
     """Leading components of a landmark, its pixels, without which `place` puts it nowhere."""
 
@@ -130,4 +143,9 @@ def points_of(model: LandmarkModel, state: Array) -> Array:
 
 def joined(core: Array, points: Array) -> Array:
     """Whole state (..., n + 3 N)."""
-    return np.concatenate([core, points.reshape(*points.shape[:-2], -1)], axis=-1)
+    return np.concatenate([core, in_line(points)], axis=-1)
+
+
+def in_line(points: Array) -> Array:
+    """Coordinates (..., 3 N) of points (..., N, 3), of which there may be no run at all."""
+    return points.reshape(*points.shape[:-2], 3 * points.shape[-2])

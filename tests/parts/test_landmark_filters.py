@@ -23,7 +23,7 @@ from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.roles import Given
 
 CLOCK = Clock.regular(300.0, 5.0)
-WINDOWS = {"windows_s": [50, 100, 200, 900], "spacing_s": [5, 5, 5, 5], "extended_s": []}
+WINDOWS = {"windows_s": [50, 100, 200, 900], "spacing_s": [5, 5, 5, 5]}
 CORNERS = [[x, y, z] for x in (1, -1) for y in (0.75, -0.75) for z in (0.5, -0.5)]
 POINTS = [*CORNERS, [0.35, 2, 0.1], [0, -0.3, 0.9]]
 
@@ -101,7 +101,7 @@ def test_batch_bound_and_filter_give_errors_in_order(data) -> None:
     batch = LandmarkBatch(kind="landmark_batch", **WINDOWS)
     bound = LandmarkBound(kind="landmark_bound")
     best = run(data, problem(), batch)
-    assert best.status.tolist() == ["finished"] * 3
+    assert best.status.tolist() == ["consistent"] * 3
     assert np.isfinite(best.state).all()
     least = run(data, problem(), bound)
     scores = [assessed(data, problem(), found) for found in (best, least)]
@@ -109,7 +109,7 @@ def test_batch_bound_and_filter_give_errors_in_order(data) -> None:
         ratio = np.median(scores[0][name][:, -1]) / np.median(scores[1][name][:, -1])
         assert 0.3 < ratio < 3.0, name
     sigma = [found.sigma[:, -1, 3:17].mean(0) for found in (best, least)]
-    assert (sigma[0] > sigma[1]).all()
+    np.testing.assert_allclose(sigma[0], sigma[1], rtol=0.03)
     free = problem(gauge_sigma_deg=5)
     online = assessed(data, free, run(data, free, LandmarkFilter(kind="landmark_filter")))
     assert np.median(online["aligned_points"][:, -1]) < 0.05
@@ -117,7 +117,7 @@ def test_batch_bound_and_filter_give_errors_in_order(data) -> None:
 
 def test_sigmas_are_named_like_the_estimates(data) -> None:
     chosen = problem(range_to="bias", camera_bias_sigma_deg=0.02)
-    short = {"windows_s": [50], "spacing_s": [5], "extended_s": [], "mirrored": False}
+    short = {"windows_s": [50], "spacing_s": [5], "mirrored": False}
     settings = LandmarkBatch(kind="landmark_batch", restarts=0, **short)
     found = chosen.unpack(run(data, chosen, settings))
     assert found["range_bias"].shape == (3, 60)
@@ -199,12 +199,12 @@ def test_a_frame_without_a_ranged_point_has_no_range(data) -> None:
 
 def test_a_run_that_does_not_fit_says_so(data) -> None:
     surface = data | {"measured_range": data["measured_range"] - 1.0}
-    settings = {"windows_s": [50, 100, 150], "spacing_s": [5, 5, 5], "extended_s": []}
+    settings = {"windows_s": [50, 100, 150], "spacing_s": [5, 5, 5]}
     batch = LandmarkBatch(kind="landmark_batch", restarts=0, mirrored=False, **settings)
     wild = surface["measured_pixel"].copy()
     wild[:, 40:] += 4.0 * np.random.default_rng(0).normal(size=wild[:, 40:].shape)
     status = run(surface | {"measured_pixel": wild}, problem(), batch).status
-    assert all("finished, but" in words or "rejected" in words for words in status)
+    assert all("larger than stated" in words or "lost" in words for words in status)
 
 
 def test_the_bound_needs_a_truth(data) -> None:
@@ -221,11 +221,8 @@ def test_the_bound_needs_a_truth(data) -> None:
         ({"windows_s": [50, 100]}, "as many entries"),
         ({"windows_s": [], "spacing_s": []}, "at least one"),
         ({"windows_s": [100, 50], "spacing_s": [5, 5]}, "must grow"),
-        ({"extended_s": [1200, 900]}, "must ascend"),
-        ({"extended_s": [600]}, "exceed the last of windows_s"),
         ({"windows_s": [50], "spacing_s": [60]}, "spacing of 60 s exceeds its window of 50 s"),
         ({"windows_s": [50], "spacing_s": [15]}, "fewer than 5 frames"),
-        ({"extended_spacing_s": 300}, "fewer than 5 frames"),
     ],
 )
 def test_windows_that_make_no_sense(keys: dict, words: str) -> None:
@@ -233,16 +230,10 @@ def test_windows_that_make_no_sense(keys: dict, words: str) -> None:
         LandmarkBatch(kind="landmark_batch", **keys)
 
 
-def test_the_usual_extension_is_longer_than_the_windows() -> None:
-    keys = {"windows_s": [50, 1000], "spacing_s": [5, 5]}
-    assert LandmarkBatch(kind="landmark_batch").extended_s == [900.0, 1200.0]
-    assert LandmarkBatch(kind="landmark_batch", **keys).extended_s == [1200.0]
-
-
 def test_a_run_with_too_few_landmarks_says_so(data) -> None:
     hidden = data["measured_pixel"].copy()
     hidden[..., 3:, :] = np.nan
-    settings = {"windows_s": [50, 100, 150], "spacing_s": [5, 5, 5], "extended_s": []}
+    settings = {"windows_s": [50, 100, 150], "spacing_s": [5, 5, 5]}
     batch = LandmarkBatch(kind="landmark_batch", **settings)
     status = run(data | {"measured_pixel": hidden}, problem(), batch).status
-    assert all("too few landmarks" in words for words in status)
+    assert all("fewer than 4 landmarks" in words for words in status)

@@ -27,6 +27,10 @@ class LandmarkBound(NamedTuple):
     sigma: Array
     covariance: Array
     """(run, kept, n_c + 3 N, n_c + 3 N)."""
+    squares: Array
+    """Sum of the squares of the measurements' own noise, by the model, (run,)."""
+    dof: Array
+    """Their number (run,)."""
 
 
 def landmark_bound(
@@ -55,10 +59,13 @@ def landmark_bound(
     n_e = model.errors + extra
     error, sigma = np.empty((2, runs, epochs, n_e))
     kept = np.empty((runs, len(keep), n_e, n_e))
+    squares, dof = np.zeros((2, runs))
     for first in range(0, epochs, _BLOCK):
         part = np.arange(first, min(first + _BLOCK, epochs))
         rows = model.rows(cores[:, part], points[:, None], part)
         response, residual = _whitened(model, rows, observed.at(slice(None), part))
+        squares += (residual**2).sum((1, 2))
+        dof += (response != 0.0).any(-1).sum((1, 2))
         for i, k in enumerate(part):
             by_start = transitions[:, k] @ by_parameters
             h = np.concatenate(
@@ -73,7 +80,7 @@ def landmark_bound(
             sigma[:, k] = np.sqrt(np.diagonal(spread, 0, -2, -1))
             for slot in np.flatnonzero(np.asarray(keep) == k):
                 kept[:, slot] = spread
-    return LandmarkBound(error, sigma, kept)
+    return LandmarkBound(error, sigma, kept, squares, dof)
 
 
 def _whitened(model: LandmarkModel, rows: Rows, observed: Observations) -> tuple[Array, Array]:

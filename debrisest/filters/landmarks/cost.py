@@ -4,16 +4,18 @@ The unknowns are the start's parameters and the points. The cost is twice the ne
 the posterior density, or with Cauchy's loss one that lets go of false matches gradually.
 """
 
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.filters.landmark_model import LandmarkModel, Observations, Rows
+from debrisest.filters.landmark_model import LandmarkModel, Observations, Rows, in_line
 from debrisest.filters.weights import CAUCHY_SCALE, cauchy_loss, cauchy_weight
 
-_AGREEING = 4.0
-"""Sigmas within which a landmark's residual is no false match."""
+FAR = 25.0
+"""Normalised square from which on a residual is that of a false match."""
+_BLOCK = 128  # frames whose rows are held at a time
 
 
 class Unknowns(NamedTuple):
@@ -27,7 +29,7 @@ class Unknowns(NamedTuple):
     @property
     def vector(self) -> Array:
         """All of them, (run, n_x + 3 N)."""
-        return np.concatenate([self.parameters, self.points.reshape(len(self.points), -1)], -1)
+        return np.concatenate([self.parameters, in_line(self.points)], -1)
 
     def moved(self, step: Array) -> "Unknowns":
         """Return the unknowns after a step (run, n_x + 3 N)."""
@@ -43,6 +45,19 @@ class Prior(NamedTuple):
     information: Array
 
 
+class _Part(NamedTuple):
+    """What frames add to the cost; fields as in `Cost`."""
+
+    value: Any
+    information: Any
+    gradient: Any
+    sightings: Any
+    agreeing: Any
+    dof: Any
+    squares: Any
+    squares_dof: Any
+
+
 class Cost(NamedTuple):
     """Cost (run,) around the unknowns, its information (run, n, n) and gradient (run, n)."""
 
@@ -53,8 +68,31 @@ class Cost(NamedTuple):
     """Frames that show a landmark, (run, N)."""
     agreeing: IntArray
     """Those that do not look like false matches."""
-    dof: Array
+    dof: IntArray
     """Components that count, (run,)."""
+    squares: Array
+    """Sum of the squares of those that do not look like false matches, (run,)."""
+    squares_dof: IntArray
+    """Their number, (run,)."""
+    last: Array
+    """Core (run, n) at the last frame."""
+    by_start: Array
+    """Derivative (run, n_c, n_x) of its errors by the parameters of the start."""
+
+    @property
+    def ratio(self) -> Array:
+        """Square per component (run,), about one for the right minimum."""
+        return np.asarray(self.squares / np.maximum(self.squares_dof, 1))
+
+    @property
+    def limit(self) -> Array:
+        """Ratio (run,) that noise exceeds by chance once in a million times."""
+        return np.asarray(1.0 + 5.0 * np.sqrt(2.0 / np.maximum(self.squares_dof, 1)))
+
+    @property
+    def far(self) -> Array:
+        """Share of the sightings (run,) that look like false matches."""
+        return np.asarray(1.0 - self.agreeing.sum(-1) / np.maximum(self.sightings.sum(-1), 1))
 
 
 def cost(
@@ -68,31 +106,84 @@ def cost(
     """Linearise the cost of the ``frames``, ascending epochs, at unknowns of all the runs."""
     core, by_parameters = model.start(at.parameters)
     cores, transitions = model.trajectory(core, int(frames[-1]))
-    seen = observed.at(slice(None), frames)
-    rows = model.rows(cores[:, frames], at.points[:, None], frames)
-    by_start = transitions[:, frames] @ by_parameters[:, None]
+    offset = prior.mean - at.vector
+    gradient = (prior.information @ offset[..., None])[..., 0]
+    prior_value = (offset * gradient).sum(-1)
+    total = _Part(prior_value, prior.information, gradient, 0, 0, 0, 0.0, 0)
+    for first in range(0, len(frames), _BLOCK):
+        part = frames[first : first + _BLOCK]
+        by_start = transitions[:, part] @ by_parameters[:, None]
+        seen = observed.at(slice(None), part)
+        rows = model.rows(cores[:, part], at.points[:, None], part)
+        found = _of_frames(model, rows, seen, at, by_start, robust)
+        total = _Part(*(old + new for old, new in zip(total, found)))
+    return Cost(*total, cores[:, -1], transitions[:, -1] @ by_parameters)
+
+
+def residuals(
+    model: LandmarkModel, observed: Observations, at: Unknowns, last: int
+) -> Iterator[tuple[IntArray, Array, Array, Array]]:
+    """Yield epochs up to ``last`` with their normalised residuals, NaN where nothing was seen.
+
+    Of the landmarks (run, epoch, N, r), of what is common (run, epoch, m); and the noise
+    (run, epoch, N, r, c), normalised, that the landmarks of an epoch share.
+    """
+    cores, _ = model.trajectory(model.start(at.parameters)[0], last)
+    for first in range(0, last + 1, _BLOCK):
+        part = np.arange(first, min(first + _BLOCK, last + 1))
+        rows = model.rows(cores[:, part], at.points[:, None], part)
+        seen = observed.at(slice(None), part)
+        used = seen.seen & at.placed[:, None, :, None]
+        yield (
+            part,
+            np.where(used, (seen.shown - rows.shown) / model.sigma, np.nan),
+            np.where(seen.common_seen, (seen.common - rows.common) / model.common_sigma, np.nan),
+            rows.shared / model.sigma[:, None],
+        )
+
+
+def without_far(
+    model: LandmarkModel, observed: Observations, at: Unknowns, last: int
+) -> Observations:
+    """Observations less what lies `FAR` from the solution ``at``, up to the epoch ``last``."""
+    seen, common_seen = observed.seen.copy(), observed.common_seen.copy()
+    for part, residual, common, _ in residuals(model, observed, at, last):
+        seen[:, part] &= (np.nansum(residual**2, axis=-1) < FAR)[..., None]
+        common_seen[:, part] &= ~(common**2 >= FAR)
+    return observed._replace(seen=seen, common_seen=common_seen)
+
+
+def _of_frames(
+    model: LandmarkModel,
+    rows: Rows,
+    seen: Observations,
+    at: Unknowns,
+    by_start: Array,
+    robust: bool,
+) -> _Part:
+    """What some frames add to the cost."""
     used = seen.seen & at.placed[:, None, :, None]
     residual = np.where(used, (seen.shown - rows.shown) / model.sigma, 0.0)
     squares = (residual**2).sum(-1)
     weight = used * (_cauchy(squares) if robust else np.ones_like(squares))[..., None]
-    offset = prior.mean - at.vector
-    gradient = (prior.information @ offset[..., None])[..., 0]
-    value = (offset * gradient).sum(-1) + _loss(squares, robust)
-    terms = _landmark_terms(model, rows, weight, residual, by_start)
-    common = _common_terms(model, rows, seen, by_start, robust)
-    information = prior.information + terms[0]
-    gradient += terms[1]
-    n_x = at.parameters.shape[-1]
+    information, gradient, explained = _landmark_terms(model, rows, weight, residual, by_start)
+    common, squares_of_common = _common_terms(model, rows, seen, by_start, robust)
+    n_x = by_start.shape[-1]
     information[:, :n_x, :n_x] += common[0]
     gradient[:, :n_x] += common[1]
-    shown = used.any(-1)
-    return Cost(
-        value + terms[2] + common[2],
+    shown, near = used.any(-1), squares < FAR
+    near_common = seen.common_seen & (squares_of_common < FAR)
+    return _Part(
+        _loss(squares, robust) + explained + common[2],
         information,
         gradient,
         shown.sum(1),
-        (shown & (squares < _AGREEING**2)).sum(1),
+        (shown & near).sum(1),
         used.sum((-3, -2, -1)) + seen.common_seen.sum((-2, -1)),
+        (squares * near).sum((-2, -1))
+        + (squares_of_common * near_common).sum((-2, -1))
+        + explained,
+        (used & near[..., None]).sum((-3, -2, -1)) + near_common.sum((-2, -1)),
     )
 
 
@@ -113,16 +204,18 @@ def _landmark_terms(
     runs, frames, points, each = residual.shape
     n_x = by_start.shape[-1]
     scale = (weight / model.sigma)[..., None]
-    flat = (rows.by_core * scale).reshape(runs, frames, points * each, -1)
+    flat = (rows.by_core * scale).reshape(runs, frames, points * each, model.errors)
     to_start = (flat @ by_start).reshape(runs, frames, points, each, n_x)
     by_point, weighted = rows.by_point * scale, weight * residual
     n = n_x + 3 * points
     information, gradient = np.zeros((runs, n, n)), np.zeros((runs, n))
-    rest = to_start.reshape(runs, -1, n_x)
+    count = frames * points * each
+    rest = to_start.reshape(runs, count, n_x)
     information[:, :n_x, :n_x] = _product(rest, rest)
-    gradient[:, :n_x] = _product(rest, weighted.reshape(runs, -1, 1))[..., 0]
+    gradient[:, :n_x] = _product(rest, weighted.reshape(runs, count, 1))[..., 0]
     both = np.concatenate([to_start, by_point, weighted[..., None]], axis=-1)
-    both = np.ascontiguousarray(np.moveaxis(both, 2, 1)).reshape(runs, points, -1, n_x + 4)
+    both = np.ascontiguousarray(np.moveaxis(both, 2, 1))
+    both = both.reshape(runs, points, frames * each, n_x + 4)
     products = _product(both[..., n_x : n_x + 3], both)
     for i in range(points):
         block = slice(n_x + 3 * i, n_x + 3 * i + 3)
@@ -149,12 +242,12 @@ def _without_shared(
     flat = shared.reshape(runs, frames, points * each, causes)
     total = np.eye(causes) + _product(flat, flat)
     right = [
-        _product(flat, to_start.reshape(runs, frames, points * each, -1)),
-        np.moveaxis(_product(shared, by_point), -2, -3).reshape(runs, frames, causes, -1),
-        _product(flat, weighted.reshape(runs, frames, -1, 1)),
+        _product(flat, to_start.reshape(runs, frames, points * each, to_start.shape[-1])),
+        np.moveaxis(_product(shared, by_point), -2, -3).reshape(runs, frames, causes, 3 * points),
+        _product(flat, weighted.reshape(runs, frames, points * each, 1)),
     ]
     half = np.linalg.solve(np.linalg.cholesky(total), np.concatenate(right, axis=-1))
-    half = half.reshape(runs, frames * causes, -1)
+    half = half.reshape(runs, frames * causes, half.shape[-1])
     known, seen = half[..., :-1], half[..., -1:]
     return (
         information - _product(known, known),
@@ -165,16 +258,17 @@ def _without_shared(
 
 def _common_terms(
     model: LandmarkModel, rows: Rows, seen: Observations, by_start: Array, robust: bool
-) -> tuple[Array, Array, Array]:
-    """Information, gradient and loss of the common rows, each weighed by itself."""
+) -> tuple[tuple[Array, Array, Array], Array]:
+    """Information, gradient and loss of the common rows, each weighed by itself; squares."""
     difference = (seen.common - rows.common) / model.common_sigma
     squares = np.where(seen.common_seen, difference, 0.0) ** 2
     weight = seen.common_seen * (_cauchy(squares) if robust else 1.0)
     residual = np.where(seen.common_seen, weight * difference, 0.0)
     flat = (rows.common_by_core * (weight / model.common_sigma)[..., None]) @ by_start
-    flat = flat.reshape(len(flat), -1, by_start.shape[-1])
-    gradient = _product(flat, residual.reshape(len(flat), -1, 1))[..., 0]
-    return _product(flat, flat), gradient, _loss(squares, robust)
+    count = residual.shape[1] * residual.shape[2]
+    flat = flat.reshape(len(flat), count, by_start.shape[-1])
+    gradient = _product(flat, residual.reshape(len(flat), count, 1))[..., 0]
+    return (_product(flat, flat), gradient, _loss(squares, robust)), squares
 
 
 def _product(a: Array, b: Array) -> Array:

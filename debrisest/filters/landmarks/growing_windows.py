@@ -41,11 +41,6 @@ class Fit(NamedTuple):
     prior: Prior
     found: Cost
 
-    @property
-    def ratio(self) -> Array:
-        """Cost per degree of freedom (run,), about one for the right minimum."""
-        return np.asarray(self.found.value / np.maximum(self.found.dof, 1))
-
 
 def fresh(model: LandmarkModel, parameters: Array, prior: Prior) -> tuple[Unknowns, Prior]:
     """Unknowns at the given parameters, without any landmark yet; the prior is a copy."""
@@ -71,7 +66,7 @@ def fit(
     for window in windows:
         at, prior = place(model, observed, at, prior, window.last)
         most = iterations if window is not windows[-1] else _PATIENCE * iterations
-        found = _descend(model, observed, at, prior, window.frames, most, robust)
+        found = descend_on(model, observed, at, prior, window.frames, most, robust)
     return found
 
 
@@ -109,7 +104,7 @@ def _typical_sighting(directions: Array, seen: BoolArray) -> IntArray:
     return np.take_along_axis(epochs, nearest[:, None], axis=1)[:, 0]
 
 
-def _descend(
+def descend_on(
     model: LandmarkModel,
     observed: Observations,
     at: Unknowns,
@@ -153,8 +148,8 @@ def _next_damping(damping: Array, better: BoolArray) -> Array:
     return np.where(better, np.maximum(damping / 10.0, _LEAST_DAMPING), 10.0 * damping)
 
 
-def _done(taken: Array, _: Array, damping: Array) -> BoolArray:
-    return np.asarray((taken < _DECREASE) | (damping >= _MOST_DAMPING))
+def _done(_: Array, promise: Array, damping: Array) -> BoolArray:
+    return np.asarray((promise < _DECREASE) | (damping >= _MOST_DAMPING))
 
 
 _DAMPING = Damping(_FIRST_DAMPING, _next_damping, _done)

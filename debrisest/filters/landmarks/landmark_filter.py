@@ -4,7 +4,8 @@ The motion has no process noise, and a landmark that is not there has zero rows 
 so that the shapes never change and a masked landmark is exactly an absent one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -38,11 +39,13 @@ def landmark_filter(
     settings: UpdateSettings,
     annealing: Annealing = Annealing(),  # noqa: B008
     keep: Sequence[int] = (),
+    anchors: Mapping[int, tuple[Belief, BoolArray]] = MappingProxyType({}),
 ) -> Estimates:
     """Filter all runs from their belief of epoch 0.
 
     ``present (run, N)`` are the landmarks that it holds; frames up to ``used_up (run,)`` are
-    already in it, so that it is only predicted until then (-1: none).
+    already in it, so that it is only predicted until then (-1: none). At the epochs of ``anchors``
+    a better belief of all runs, and the landmarks that it holds, take the place of the filter's.
     """
     counts, totals = {"rejected": 0, "updates": 0}, ["dropped"]
     start = joined(belief.core, belief.points), belief.covariance
@@ -62,6 +65,9 @@ def landmark_filter(
             belief, tracks, figures = _frame(
                 model, belief, tracks, shown, k, active, settings, annealing
             )
+            if k in anchors:
+                better, present = anchors[k]
+                belief, tracks = take(better, writer.runs), begin(present[writer.runs])
             confirmed = np.where(tracks.confirmed[..., None], belief.points, np.nan)
             going = writer.record(
                 *(k, joined(belief.core, belief.points), belief.covariance, figures),

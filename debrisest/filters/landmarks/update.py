@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.gate import chi_square_limits, group_squares
 from debrisest.filters.iterated import iterate
-from debrisest.filters.landmark_model import LandmarkModel, Observations
+from debrisest.filters.landmark_model import LandmarkModel, Observations, in_line
 from debrisest.filters.linear_algebra import solve
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.runs import put, take
@@ -104,7 +104,7 @@ def _iterate(
     def again(runs: IntArray) -> None:
         core, points = _moved(model, prior, step.correction)
         linear = _linearise(model, core, points, observed, k, inflation)
-        shift = (prior.points - points).reshape(len(core), -1)
+        shift = in_line(prior.points - points)
         lag = np.concatenate([model.difference(prior.core, core), shift], axis=-1)
         residual = linear.innovation - (linear.response @ lag[..., None])[..., 0]
         new = _gauss_newton(prior, linear._replace(innovation=residual), used)

@@ -1,5 +1,6 @@
 """Cramer-Rao bounds as estimators: linearised at the truth, fed with the same data."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -13,9 +14,13 @@ from debrisest.filters.estimates import Estimates
 from debrisest.filters.landmark_model import LandmarkModel, core_of, joined, points_of, split
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.scan_model import ScanModel
+from debrisest.filters.self_test import SelfTest, Verdict, cost_test, judged, lost_test
 from debrisest.parts.filters.association import counting
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given
+
+_ALLOWED = 0.5
+"""Sigmas by which a model may leave the truth: its errors' squares grow by less than a quarter."""
 
 
 class Efficient(FilterPart):
@@ -65,7 +70,13 @@ class LandmarkBound(FilterPart):
         )
         moved = points + bound.error[..., n_c:].reshape(points.shape)
         state = joined(model.retract(core, bound.error[..., :n_c]), moved)
-        return _estimates(state, bound.sigma, bound.covariance, kept)
+        found = _estimates(state, bound.sigma, bound.covariance, kept)
+        off = lost_test(
+            _off(model, core, bound.sigma[..., :n_c]) > _ALLOWED,
+            "no bound: the model's motion from the true start leaves the true one by more than "
+            f"{_ALLOWED} of its sigma; a shorter step, or the model of this motion, is needed",
+        )
+        return _checked(found, [off, cost_test(bound.squares, bound.dof)])
 
 
 class LinearisedAtTruth(FilterPart):
@@ -92,6 +103,25 @@ class LinearisedAtTruth(FilterPart):
 
 def _kept(times: list[float], given: Given) -> list[int]:
     return sorted({*kept_epochs(times, given.clock), given.measured.shape[1] - 1})
+
+
+def _off(model: LandmarkModel, core: Array, sigma: Array) -> Array:
+    """How far (run,) the model's motion leaves the true cores (run, time, n), in sigma."""
+    start, _ = model.start(model.parameters(core[:, 0]))
+    cores, _ = model.trajectory(start, core.shape[1] - 1)
+    apart = np.abs(model.difference(core, cores))
+    known = sigma > 0.0
+    off = np.where(known, apart / np.where(known, sigma, 1.0), 0.0)
+    return np.asarray(off.max((1, 2)), dtype=np.float64)
+
+
+def _checked(found: Estimates, tests: Sequence[SelfTest]) -> Estimates:
+    """Estimates of a bound without the runs for which there is none, each with what it says."""
+    verdict = judged(tests, len(found.status))
+    lost = verdict.code == Verdict.LOST
+    for values in (found.state, found.sigma, found.covariance):
+        values[lost] = np.nan
+    return found._replace(status=np.where(verdict.code > 0, verdict.sentence, found.status))
 
 
 def _estimates(state: Array, sigma: Array, covariance: Array, kept: list[int]) -> Estimates:

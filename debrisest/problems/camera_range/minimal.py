@@ -17,6 +17,7 @@ from debrisest.dynamics.clohessy_wiltshire import mean_motion_of
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.landmark_model import LandmarkModel
 from debrisest.problems.camera_range.data import require_measurable
+from debrisest.problems.camera_range.doubts import doubtful_model
 from debrisest.problems.camera_range.model import (
     CORE,
     CORE_ERRORS,
@@ -33,7 +34,6 @@ from debrisest.problems.camera_range.model import (
     Q,
     RangeModel,
 )
-from debrisest.problems.camera_range.projection import landmark_model
 from debrisest.problems.camera_range.score import TRUE_STATE, scores
 from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 from debrisest.target.start_frame import in_start_frame
@@ -113,7 +113,7 @@ class CameraRangeMinimal(ProblemPart):
         """Return motion and measurements of one clock step."""
         start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
         white = float(data["attitude_noise"][0]) if self.camera_attitude == "known" else 0.0
-        return landmark_model(
+        return doubtful_model(
             CameraRangeGeometry(
                 camera=quaternion.to_matrix(data["known_q_hc"]),
                 points=data["measured_pixel"].shape[3],

@@ -13,6 +13,7 @@ is either known or, as in the paper, implied by rho: it then looks at the centre
 so that with an implied one it is tied to rho, by the derivative G of the camera's rotation.
 """
 
+from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -38,6 +39,10 @@ RATE_ERROR, POSITION_ERROR, VELOCITY_ERROR, LOG_INERTIA_ERROR = (
 CORE_ERRORS = 17
 _TURNING = np.r_[0:6, 12:17]
 """Errors that the rotation depends on."""
+_TURNED = RATE.stop
+_LARGEST_TURN = 0.125
+"""Angle, rad, up to which one Runge-Kutta step of order 4 is far below what pixels show."""
+_MOST_SUBSTEPS = 64.0
 
 
 class CameraRangeGeometry(NamedTuple):
@@ -128,44 +133,63 @@ _CROSS_TERMS = [LOG_INERTIA.start - 4 + 3, LOG_INERTIA.start - 4 + 4]
 
 def trajectory(known: CameraRangeGeometry, core: Array, last: int) -> tuple[Array, Array]:
     """Cores ``(run, last + 1, n)`` from that of epoch 0, and errors by those of epoch 0."""
-    shape = tumbling_in_orbit.body(core[..., LOG_INERTIA])
-    q, w, n = core[..., Q], core[..., RATE], known.mean_motion
     cores = np.empty((len(core), last + 1, core.shape[-1]))
     cores[:] = core[:, None]
-    rates, radials = (np.empty((len(core), last, 4, 3)) for _ in range(2))
-    products = tumbling_in_orbit.torque_products(shape)
-    for k in range(last):
-        q, w, stages = tumbling_in_orbit.step(
-            q, w, shape, n, known.step, products, known.gravity_gradient
-        )
-        rates[:, k], radials[:, k] = stages
-        cores[:, k + 1, Q], cores[:, k + 1, RATE] = q, w
-    centre = clohessy_wiltshire.transition(n, known.step * np.arange(last + 1.0))
+    turning = np.empty((len(core), last + 1, tumbling_in_orbit.TURNING, 11))
+    for count, runs in _by_substeps(known, core):
+        cores[runs, :, :_TURNED], turning[runs] = _rotation(known, core[runs], last, count)
+    centre = clohessy_wiltshire.transition(known.mean_motion, known.step * np.arange(last + 1.0))
     moving = slice(POSITION.start, VELOCITY.stop)
     cores[..., moving] = (centre @ core[:, None, moving, None])[..., 0]
-    steps = tumbling_in_orbit.sensitivity(
-        tumbling_in_orbit.Stages(rates, radials),
-        tumbling_in_orbit.Body(*(part[:, None] for part in shape)),
-        n,
-        known.step,
-        known.gravity_gradient,
-    )
-    return cores, _transitions(known, _composed(steps), centre)
+    return cores, _transitions(known, turning, centre)
 
 
 def process(known: CameraRangeGeometry, core: Array) -> tuple[Array, Array]:
     """Core ``(run, n)`` one step later, and the derivative ``(run, n_c, n_c)`` of its errors."""
-    shape = tumbling_in_orbit.body(core[..., LOG_INERTIA])
-    n, step = known.mean_motion, known.step
     moved = core.copy()
-    moved[..., Q], moved[..., RATE], stages = tumbling_in_orbit.step(
-        core[..., Q], core[..., RATE], shape, n, step, gravity=known.gravity_gradient
-    )
-    centre = clohessy_wiltshire.transition(n, step)
+    turning = np.empty((len(core), tumbling_in_orbit.TURNING, 11))
+    for count, runs in _by_substeps(known, core):
+        turned, by_start = _rotation(known, core[runs], 1, count)
+        moved[runs, :_TURNED], turning[runs] = turned[:, 1], by_start[:, 1]
+    centre = clohessy_wiltshire.transition(known.mean_motion, known.step)
     moving = slice(POSITION.start, VELOCITY.stop)
     moved[..., moving] = (centre @ core[..., moving, None])[..., 0]
-    turning = tumbling_in_orbit.sensitivity(stages, shape, n, step, known.gravity_gradient)
     return moved, _transitions(known, turning, centre)
+
+
+def _by_substeps(known: CameraRangeGeometry, core: Array) -> Iterator[tuple[int, IntArray]]:
+    """Numbers of Runge-Kutta steps in one epoch, powers of two, and the runs that need them."""
+    turn = np.linalg.norm(core[..., RATE], axis=-1) * known.step / _LARGEST_TURN
+    halvings = np.ceil(np.log2(np.clip(np.nan_to_num(turn, nan=1.0), 1.0, _MOST_SUBSTEPS)))
+    for halving in np.unique(halvings):
+        yield int(2**halving), np.flatnonzero(halvings == halving)
+
+
+def _rotation(
+    known: CameraRangeGeometry, core: Array, last: int, count: int
+) -> tuple[Array, Array]:
+    """Attitude and rate (run, last + 1, 7), and their errors by those of epoch 0."""
+    shape = tumbling_in_orbit.body(core[..., LOG_INERTIA])
+    products = tumbling_in_orbit.torque_products(shape)
+    q, w, n, duration = core[..., Q], core[..., RATE], known.mean_motion, known.step / count
+    turned = np.empty((len(core), last + 1, _TURNED))
+    rates, radials = (np.empty((len(core), last * count, 4, 3)) for _ in range(2))
+    for k in range(last * count):
+        if k % count == 0:
+            turned[:, k // count, Q], turned[:, k // count, RATE] = q, w
+        q, w, stages = tumbling_in_orbit.step(
+            q, w, shape, n, duration, products, known.gravity_gradient
+        )
+        rates[:, k], radials[:, k] = stages
+    turned[:, last, Q], turned[:, last, RATE] = q, w
+    steps = tumbling_in_orbit.sensitivity(
+        tumbling_in_orbit.Stages(rates, radials),
+        tumbling_in_orbit.Body(*(part[:, None] for part in shape)),
+        n,
+        duration,
+        known.gravity_gradient,
+    )
+    return turned, _composed(steps)[:, ::count]
 
 
 def _composed(steps: Array) -> Array:

@@ -9,10 +9,13 @@ from debrisest.attitude import quaternion
 from debrisest.dynamics import clohessy_wiltshire, gravity_gradient, log_inertia
 from debrisest.dynamics.pointing import camera_axes
 from debrisest.filters.landmark_model import LandmarkModel, Observations, split
-from debrisest.filters.landmarks.batch_start import Batch, Started, batch_start
+from debrisest.filters.landmarks.batch_start import Batch, batch_problem
 from debrisest.filters.landmarks.growing_windows import Window
 from debrisest.filters.landmarks.landmark_filter import landmark_filter
+from debrisest.filters.landmarks.self_tests import self_tests
 from debrisest.filters.landmarks.update import Belief, UpdateSettings
+from debrisest.filters.landmarks.whole_arc import whole_arc
+from debrisest.filters.self_test import judged
 from debrisest.problems.camera_range.model import CameraRangeGeometry
 from debrisest.problems.camera_range.projection import landmark_model
 
@@ -22,6 +25,20 @@ POINTS = np.concatenate([CORNERS, [[0.35, 2, 0.1], [-0.35, 2, 0.1], [0, -0.3, 0.
 RHO = np.array([5.0, 17.3205081, 5.90884652])
 VELOCITY = np.array([9.33582e-3, -2 * N * 5.0, -1.12315e-3])
 WINDOWS = [Window(10, 1), Window(20, 1), Window(40, 1), Window(70, 2), Window(100, 1)]
+
+
+class Started(NamedTuple):
+    """What a batch says at epoch 0, and of itself."""
+
+    core: np.ndarray
+    points: np.ndarray
+    covariance: np.ndarray
+    present: np.ndarray
+    last: np.ndarray
+    verdict: np.ndarray
+    sentence: np.ndarray
+    restarts: np.ndarray
+    ratio: np.ndarray
 
 
 class Experiment(NamedTuple):
@@ -38,12 +55,23 @@ class Experiment(NamedTuple):
     def with_observed(self, observed: Observations) -> "Experiment":
         return self._replace(observed=observed)
 
-    def batch(self, **options) -> Started:
+    def batch(self, ends: tuple = (), **options) -> Started:
+        """Batch over windows, and on over longer ones up to some ends."""
         settings = Batch(**({"windows": WINDOWS} | options))
+        task = batch_problem(self.model, self.observed, self.parameters, self.covariance, settings)
         with np.errstate(all="ignore"):
-            return batch_start(
-                self.model, self.observed, self.parameters, self.covariance, settings
-            )
+            arc = whole_arc(task, [settings.windows[-1].last, *ends])
+            said = judged(self_tests(task, arc), len(self.parameters))
+        last = arc.anchors[-1]
+        return Started(
+            *last.start,
+            present=last.present,
+            last=np.full(len(said.code), last.epoch),
+            verdict=said.code,
+            sentence=said.sentence,
+            restarts=arc.found.restarts,
+            ratio=arc.found.best.found.ratio,
+        )
 
     def filtered(self, started: Started, **rule):
         belief = Belief(started.core, started.points, started.covariance)

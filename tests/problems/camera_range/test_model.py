@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 from debrisest.attitude import quaternion
+from debrisest.dynamics import clohessy_wiltshire
+from debrisest.problems.camera_range.doubts import doubtful_model
 from debrisest.problems.camera_range.projection import landmark_model
+
+N, STEP = 1.078007613e-3, 5.0
 
 CASES = {
     "known": {},
@@ -94,3 +98,52 @@ def test_an_infinitely_distant_camera_cannot_tell_the_mirror(experiment) -> None
         turn = np.swapaxes(case.known.camera[0, 0], -1, -2) @ quaternion.to_matrix(cores[0, :, :4])
         seen.append(p[0] @ np.swapaxes(turn, -1, -2))
     np.testing.assert_allclose(seen[0] * [1.0, 1.0, -1.0], seen[1], atol=1e-5)
+
+
+def test_a_fast_rotation_is_taken_in_smaller_steps(experiment) -> None:
+    """At 6 deg/s one Runge-Kutta step in 5 s is 2 deg off after ten minutes."""
+    case = experiment(1, 121, 40, rate_deg_s=(3.0, -2.0, 5.0), noise=0.0)
+    cores, _ = case.model.trajectory(case.core[:, 0], 120)
+    apart = case.model.difference(cores[:, -1], case.core[:, -1])[0]
+    assert np.degrees(np.abs(apart[:3]).max()) < 0.02
+    assert np.degrees(np.abs(apart[3:6]).max()) < 1e-3
+    slow = case.core[:, 0].copy()
+    slow[:, 4:7] *= 0.1
+    alone, _ = case.model.trajectory(slow, 20)
+    pair = case.model.of(np.array([0, 0]))
+    both, _ = pair.trajectory(np.concatenate([slow, case.core[:, 0]]), 20)
+    np.testing.assert_array_equal(both[:1], alone)
+
+
+def test_doubts_are_the_slopes_of_what_is_shown(experiment) -> None:
+    """Derivatives by a focal length, a range, a turned camera and a push against differences."""
+    case = experiment(1, 41, 41, noise=0.0)
+    known = case.known
+    wide = doubtful_model(known).doubted()
+    cores, transitions = wide.trajectory(case.core[:, 0], 40)
+    epoch = np.array([40])
+    rows = wide.rows(cores[:, epoch], case.points[:, None], epoch)
+    n_c, by_end = case.model.errors, transitions[:, 40, :, case.model.errors :]
+    pixels = (rows.by_core[0, 0] @ by_end[0])[..., :2, :]
+
+    def shown(model, core=None):
+        at = cores[:, epoch] if core is None else core
+        return model.rows(at, case.points[:, None], epoch).shown[0, 0, :, :2]
+
+    base = shown(case.model)
+    longer = landmark_model(known._replace(focal=known.focal * (1 + 1e-6)))
+    np.testing.assert_allclose(pixels[..., 0], (shown(longer) - base) / 1e-6, rtol=1e-3)
+    turned = known.camera @ quaternion.to_matrix(quaternion.exp(np.array([1e-6, 0.0, 0.0])))
+    other = landmark_model(known._replace(camera=turned))
+    np.testing.assert_allclose(pixels[..., 2], (shown(other) - base) / 1e-6, rtol=1e-3, atol=1e-2)
+    assert (rows.common_by_core[0, 0, 0, n_c:] == np.eye(11)[1]).all()
+    times = STEP * np.arange(41.0)
+    pushed, _ = clohessy_wiltshire.propagate(np.zeros(3), np.zeros(3), N, times)
+    for axis in range(3):
+        push = np.eye(3)[axis]
+        for start in times[:-1]:
+            kick, drift = push * STEP, 0.5 * push * STEP**2
+            rest = np.array([times[-1] - start - STEP])
+            pushed[-1] += clohessy_wiltshire.propagate(drift, kick, N, rest)[0][0]
+        np.testing.assert_allclose(by_end[0, 6:9, 5 + axis], pushed[-1], rtol=1e-9)
+        pushed[-1] = 0.0

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from debrisest.filters.landmark_model import points_of
-from debrisest.filters.landmarks.batch_start import StartStatus
 from debrisest.filters.landmarks.cost import Prior, Unknowns, cost
 from debrisest.filters.landmarks.growing_windows import Window, fresh, place
+from debrisest.filters.self_test import Verdict
 
 POSITION = slice(6, 9)
 
@@ -43,7 +43,7 @@ def test_false_ranges_do_not_bend_a_robust_batch(experiment) -> None:
     common = case.observed.common.copy()
     common[:, [5, 30, 55, 80]] += 3.0  # m
     started = case.with_observed(case.observed._replace(common=common)).batch(robust=True)
-    assert (started.status == StartStatus.FOUND).all()
+    assert (started.verdict == Verdict.CONSISTENT).all()
     assert np.abs(case.start_error(started)[:, POSITION]).max() < 0.1
 
 

@@ -1,0 +1,114 @@
+"""What the model of a camera and a range takes for granted, as parameters that could be estimated.
+
+Every doubt is an error that the model holds at zero: of the focal length, of the range, of the
+camera's attitude, and constant accelerations and torques that it knows nothing of. Only derivatives
+are needed: the self-tests ask how far from zero the residuals would pull each.
+"""
+
+import numpy as np
+
+from debrisest.arrays import Array, IntArray
+from debrisest.attitude.vectors import matrix_of_cross
+from debrisest.dynamics import clohessy_wiltshire
+from debrisest.filters.landmark_model import Doubt, LandmarkModel, Rows
+from debrisest.problems.camera_range import model as motion
+from debrisest.problems.camera_range.model import CameraRangeGeometry
+from debrisest.problems.camera_range.projection import landmark_model
+from debrisest.sensors import pinhole
+
+_DEGREES = 180.0 / np.pi
+_FOCAL = Doubt("the focal length seems {value} sigma off, by {size:+.2g} of it", 1.0)
+_RANGE = Doubt("the range seems {value} sigma off, by {size:+.2g} m", 1.0)
+_CAMERA = Doubt("the camera's attitude seems {value} sigma off, by {size:+.2g} deg", _DEGREES)
+_PULL = Doubt("an acceleration of {size:+.2g} m/s^2 seems to be missing ({value} sigma)", 1.0)
+_TORQUE = Doubt(
+    "the rotation seems not to be free: {size:+.2g} deg/s^2 are missing ({value} sigma)",
+    _DEGREES,
+)
+DOUBTS = (_FOCAL, _RANGE, *(_CAMERA,) * 3, *(_PULL,) * 3, *(_TORQUE,) * 3)
+FOCAL, RANGE, CAMERA, PULL, TORQUE = (
+    *(slice(0, 1), slice(1, 2), slice(2, 5), slice(5, 8)),
+    slice(8, 11),
+)
+
+
+def doubtful_model(known: CameraRangeGeometry) -> LandmarkModel:
+    """Return the problem for the landmark filters, with what it takes for granted."""
+    model = landmark_model(known)
+    return model._replace(
+        doubts=DOUBTS,
+        doubted=lambda: doubted(known, model),
+        of=lambda runs: doubtful_model(known.of(runs)),
+    )
+
+
+def doubted(known: CameraRangeGeometry, model: LandmarkModel) -> LandmarkModel:
+    """Return the model with errors of the `DOUBTS` behind those of its core, all of value zero."""
+    count = len(DOUBTS)
+
+    def start(parameters: Array) -> tuple[Array, Array]:
+        core, by = model.start(parameters[..., :-count])
+        wide = np.zeros((*by.shape[:-2], by.shape[-2] + count, by.shape[-1] + count))
+        wide[..., :-count, :-count], wide[..., -count:, -count:] = by, np.eye(count)
+        return core, wide
+
+    def trajectory(core: Array, last: int) -> tuple[Array, Array]:
+        cores, transitions = model.trajectory(core, last)
+        n_c = transitions.shape[-1]
+        wide = np.zeros((*transitions.shape[:-2], n_c + count, n_c + count))
+        wide[..., :n_c, :n_c], wide[..., n_c:, n_c:] = transitions, np.eye(count)
+        wide[..., motion.POSITION_ERROR.start : motion.VELOCITY_ERROR.stop, n_c:][..., PULL] = (
+            _pulled(known, last)
+        )
+        wide[..., :6, n_c:][..., TORQUE] = _turned(transitions[..., :6, :6], known.step)
+        return cores, wide
+
+    def rows(cores: Array, points: Array, epochs: IntArray) -> Rows:
+        return _doubted_rows(known, model.rows(cores, points, epochs))
+
+    n_c = model.errors
+    names = tuple(f"doubt_{i + 1}" for i in range(count))
+    return model._replace(
+        error_names=(*model.error_names[:n_c], *names, *model.error_names[n_c:]),
+        start=start,
+        trajectory=trajectory,
+        rows=rows,
+        doubted=None,
+    )
+
+
+def _doubted_rows(known: CameraRangeGeometry, found: Rows) -> Rows:
+    pixels = found.shown[..., :2]
+    static = np.zeros((*found.shown.shape, len(DOUBTS)))
+    static[..., :2, FOCAL] = pixels[..., None]
+    static[..., 2:, RANGE] = 1.0
+    if known.attitude == "known" and not known.camera_bias:
+        sight = np.concatenate([pixels / known.focal, np.ones_like(pixels[..., :1])], axis=-1)
+        static[..., :2, CAMERA] = pinhole.derivative(sight, known.focal) @ matrix_of_cross(sight)
+    common = np.zeros((*found.common.shape, len(DOUBTS)))
+    if known.range_model == "centre":
+        common[..., RANGE] = 1.0
+    return found._replace(
+        by_core=np.concatenate([found.by_core, static], axis=-1),
+        common_by_core=np.concatenate([found.common_by_core, common], axis=-1),
+    )
+
+
+def _pulled(known: CameraRangeGeometry, last: int) -> Array:
+    """Position and velocity (last + 1, 6, 3) by a constant acceleration of the chaser."""
+    times = known.step * np.arange(last + 1.0)
+    back = clohessy_wiltshire.transition(known.mean_motion, -times[1:])
+    return _summed(clohessy_wiltshire.transition(known.mean_motion, times), back, known.step)
+
+
+def _turned(transitions: Array, step: float) -> Array:
+    """Attitude and rate (..., epoch, 6, 3) by a constant angular acceleration in body axes."""
+    return _summed(transitions, np.asarray(np.linalg.inv(transitions[..., 1:, :, :])), step)
+
+
+def _summed(transitions: Array, back: Array, step: float) -> Array:
+    """Response (..., epoch, 6, 3) to a constant acceleration, which acts over each step."""
+    kick = np.concatenate([0.5 * step**2 * np.eye(3), step * np.eye(3)])
+    at_start = np.zeros((*transitions.shape[:-1], 3))
+    at_start[..., 1:, :, :] = np.cumsum(back @ kick, axis=-3)
+    return np.asarray(transitions @ at_start)
