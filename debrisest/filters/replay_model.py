@@ -46,6 +46,9 @@ class ReplayModel(NamedTuple):
     """Of the plain errors."""
     displace: Callable[[Array, Array], Array] = add
     """Exact inverse of `difference`, physical or not, with which a bound's errors make states."""
+    excess: Callable[[Array, Array], tuple[Array, Array]] | None = None
+    """(state, step in plain errors (run, n_e)) -> what `retract` limits of a step: its derivative
+    (run, c, n_e), and by how much it has to change (run, c), zero where it need not."""
     select: Callable[[IntArray], "ReplayModel"] | None = None
     """The model of some runs; without it, the model is the same for all."""
 

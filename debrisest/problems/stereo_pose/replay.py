@@ -53,6 +53,7 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
         ),
         sigma=sigma,
         error_names=error_names("attitude_x attitude_y attitude_z", points),
+        excess=chart.excess,
         displace=lambda state, error: chart.displace(state, error, points),
     )
 
