@@ -76,7 +76,7 @@ def retract(state: Array, error: Array, points: int) -> Array:
 
 
 def excess(state: Array, step: Array) -> tuple[Array, Array]:
-    """Derivative ``(..., 2, n_e)`` of two slopes of the inertia, and what `retract` cuts of them."""
+    """Derivative ``(..., 2, n_e)`` of two slopes of the inertia, and what `retract` cuts."""
     rows = np.zeros((*step.shape[:-1], 2, step.shape[-1]))
     rows[..., K_ERROR] = inertia_ratios.slopes_by_ratios(state[..., K])
     return rows, inertia_ratios.excess(state[..., K], step[..., K_ERROR])
