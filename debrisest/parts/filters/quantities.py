@@ -22,6 +22,13 @@ QUANTITIES = {
     "converged": Quantity(RUN, "1", "the last replay converged", "1"),
     "restarts": Quantity(RUN, "1", "restarts of the batch", "1"),
     "dropped": Quantity(RUN, "1", "landmarks that were given up", "1"),
+    "doubt": Quantity(
+        RUN, "1", "0 consistent, 1 errors may be larger than stated, 2 ambiguous, 3 lost", "1"
+    ),
+    "doubtful": Quantity(RUN, "1", "the run does not call itself consistent", "1"),
+    "silent_failure": Quantity(
+        RUN, "1", "beyond five sigma at the end, and calls itself consistent", "1"
+    ),
     "fit": Quantity(RUN, "1", "cost of the batch per degree of freedom", "1"),
     "repairs": Quantity(RUN, "1", "covariance repairs", "1"),
     "nees": Quantity(

@@ -6,14 +6,15 @@ import numpy as np
 
 from debrisest.arrays import Data
 from debrisest.assessment.consistency import chart_free
+from debrisest.assessment.silent import silent_failures
 from debrisest.assessment.statistics import per_dimension
 from debrisest.roles import ProblemPart, Window
 from debrisest.runner.stages.reason import about
 from debrisest.scenario.case import Case
 
-VERSION = 2
+VERSION = 3
 
-_COUNTED = ("converged", "repairs", "reopened")
+_COUNTED = ("converged", "repairs", "reopened", "doubt")
 """What filters count over whole runs."""
 
 
@@ -39,6 +40,7 @@ def run(case: Case, estimator: str, data: Data) -> Data:
         result |= diagnostics(data)
         with about(f"estimators.{estimator}.problem", chosen.problem):
             result |= _scored(chosen.problem, data, case.scenario.scored)
+        result |= silent_failures(result)
     return result
 
 

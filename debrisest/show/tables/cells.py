@@ -24,6 +24,8 @@ from debrisest.show.tables.verdict import (
 )
 from debrisest.vocabulary import TWO_SIDED, VOCABULARY, table_scale
 
+_DOUBTFUL_BOUND = 0.05
+"""Share of runs by which a bound is none."""
 COLUMNS = [
     *("table", "case", "estimator", "quantity", "unit", "statistic", "window"),
     *("published", "measured", "ci_low", "ci_high", "bound"),
@@ -106,7 +108,8 @@ def _row(
     bound = None
     if estimator != SIMULATED:
         name = scenario.common.estimators[estimator].bound
-        bound = _measured(key, name, table, scenario, results)
+        if _is_bound(results.get((key.case, name))):
+            bound = _measured(key, name, table, scenario, results)
     return {
         **key._asdict(),
         "estimator": estimator,
@@ -116,6 +119,14 @@ def _row(
         "bound": bound["measured"] if bound else np.nan,
         "verdict": str(_said(key.quantity, found, published)),
     }
+
+
+def _is_bound(found: Result | None) -> bool:
+    """Return whether most runs of a bound say that it is none, so that it is not shown."""
+    if found is None or not found.shows("doubt"):
+        return True
+    doubt = found.figures("doubt", "mean", "end")[found.good]
+    return bool(np.mean(doubt > 0.0) <= _DOUBTFUL_BOUND) if len(doubt) else True
 
 
 def _said(quantity: str, found: Mapping[str, Any], published: Published | None) -> Verdict:
