@@ -15,6 +15,9 @@ class ChiSquare(NamedTuple):
     """The dataset that holds its degrees of freedom."""
     white: bool
     """Whether its values at different epochs are independent."""
+    of_costs: bool = False
+    """Whether it is a difference of costs, which is too small only where the estimate's is no
+    minimum."""
 
 
 class Quantity(NamedTuple):

@@ -36,7 +36,8 @@ def chart_free(cost_of_truth: Array, cost_of_estimate: Array, n: int) -> Array:
     """``W = [C(truth) - C(map)] / n``, whose mean is 1 for a maximum a posteriori estimate.
 
     Costs are twice negative logarithms of the posterior density, up to the same constant; ``n`` is
-    the number of errors. A value below zero says that the estimate is no minimum.
+    the number of errors. A mean below its interval says that estimates are no minimum of their own
+    cost, not that they are too cautious; so does any value below zero.
     """
     return np.asarray((cost_of_truth - cost_of_estimate) / n)
 

@@ -6,20 +6,25 @@ from debrisest.arrays import Array, Data
 
 _CHANCE = 5.7e-7
 """Of five sigma of a normal variable, on both sides."""
+_NO_MINIMUM = -1e-2
 
 
 def silent_failures(errors: Data) -> Data:
     """Return ``silent_failure (run,)`` and ``doubtful (run,)``, as far as there are figures.
 
     A run fails where its normalised error squared at the end is one that a right covariance has
-    once in two million times, or is not finite; silently, if ``doubt`` is zero.
+    once in two million times, or is not finite; silently, if ``doubt`` is zero. Where costs are
+    known it is `chart_free` in place of that square, which no choice of coordinates can bend; the
+    run fails too if it is below zero, no minimum.
     """
     if "doubt" not in errors:
         return {}
     doubtful = errors["doubt"] > 0
     result: Data = {"doubtful": doubtful.astype(np.float64)}
-    if "nees" in errors and "nees_dof" in errors:
-        failed = ~(_chance(errors["nees"][:, -1], errors["nees_dof"][:, -1]) > _CHANCE)
+    name = "w" if "w" in errors else "nees"
+    if name in errors and f"{name}_dof" in errors:
+        square, dof = errors[name][:, -1], errors[f"{name}_dof"][:, -1]
+        failed = ~((square > _NO_MINIMUM) & (_chance(square, dof) > _CHANCE))
         result["silent_failure"] = (failed & ~doubtful).astype(np.float64)
     return result
 

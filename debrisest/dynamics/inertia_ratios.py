@@ -19,6 +19,7 @@ LARGEST_SLOPE = 0.97
 LARGEST_CHANGE = 0.5
 """A single correction changes a slope by no more than this."""
 LARGEST_START_SLOPE = 0.95
+_NOT_CUT = 1e-12
 
 
 def ratios(moments: Array) -> Array:
@@ -89,12 +90,28 @@ def move(k: Array, change: Array) -> Array:
     To first order the result is ``k + change``; the step is straight in the chart (sx, sz), where
     it is cut at `LARGEST_CHANGE` and at `LARGEST_SLOPE`.
     """
+    slope = slopes(k)[..., ::2]
+    rise = (slopes_by_ratios(k) @ change[..., None])[..., 0]
+    return from_slopes(slope + _cut(slope, rise))
+
+
+def excess(k: Array, change: Array) -> Array:
+    """By how much `move` cuts a correction ``(..., 2)``, in sx and sz: what is made minus asked."""
+    rise = (slopes_by_ratios(k) @ change[..., None])[..., 0]
+    cut = _cut(slopes(k)[..., ::2], rise)
+    return np.where(np.abs(cut - rise) > _NOT_CUT, cut - rise, 0.0)
+
+
+def slopes_by_ratios(k: Array) -> Array:
+    """Derivative ``(..., 2, 2)`` of (sx, sz) with respect to ``k``."""
     sx, _, sz = np.moveaxis(slopes(k), -1, 0)
-    e1, inverse_e2 = np.exp(k[..., 0]), np.exp(k[..., 1])
-    dk1, dk2 = change[..., 0], change[..., 1]
-    rise = np.stack([-sx * dk1 + dk2 / (e1 * inverse_e2), e1 * inverse_e2 * dk1 + sz * dk2], -1)
+    product = np.exp(k[..., 0] + k[..., 1])
+    return np.stack([-sx, 1.0 / product, product, sz], -1).reshape(*sx.shape, 2, 2)
+
+
+def _cut(slope: Array, rise: Array) -> Array:
     rise = np.clip(rise, -LARGEST_CHANGE, LARGEST_CHANGE)
-    return from_slopes(np.clip(np.stack([sx, sz], -1) + rise, -LARGEST_SLOPE, LARGEST_SLOPE))
+    return np.asarray(np.clip(slope + rise, -LARGEST_SLOPE, LARGEST_SLOPE) - slope)
 
 
 def feasible(k: Array, limit: float = LARGEST_START_SLOPE) -> Array:

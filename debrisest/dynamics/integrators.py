@@ -1,4 +1,4 @@
-"""One step of torque-free rotation in principal axes: explicit Euler, or classical Runge-Kutta.
+"""A step of torque-free rotation in principal axes: explicit Euler, or classical Runge-Kutta.
 
 The source is Biondi et al. (2017), Eqs 29 and 31. We depart from the printed Eq 29 in the sign of
 Euler's term (``-J^-1 (w x J w)``). Components come first, which is fastest for sigma points.
@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.dynamics.substeps import parts, substeps
 
 Integrator = Callable[[Array, Array, Array, float], tuple[Array, Array]]
 
@@ -39,11 +40,19 @@ def euler_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array,
 
 
 def rk4_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array, Array]:
-    """Return ``q`` and rate after one classical Runge-Kutta step of ``step`` seconds."""
-    half = 0.5 * step
+    """Return ``q`` and rate after ``step`` seconds by classical Runge-Kutta.
+
+    Of a fast body the step is divided (`debrisest.dynamics.substeps`).
+    """
+    for _, part in parts(step, substeps(np.linalg.norm(rate, axis=0), step)):
+        q, rate = _runge_kutta(q, rate, ratio, part)
+    return q, rate
+
+
+def _runge_kutta(q: Array, rate: Array, ratio: Array, step: float | Array) -> tuple[Array, Array]:
+    half, sixth = 0.5 * step, step / 6
     q1, w1 = derivative(q, rate, ratio)
     q2, w2 = derivative(q + half * q1, rate + half * w1, ratio)
     q3, w3 = derivative(q + half * q2, rate + half * w2, ratio)
     q4, w4 = derivative(q + step * q3, rate + step * w3, ratio)
-    sixth = step / 6
     return q + sixth * (q1 + 2 * (q2 + q3) + q4), rate + sixth * (w1 + 2 * (w2 + w3) + w4)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.dynamics import kepler
 from debrisest.dynamics.kepler import MU_EARTH
 
@@ -32,8 +32,8 @@ class Leader(NamedTuple):
     acceleration: Array
     """Second time derivative of the true anomaly, rad/s^2."""
 
-    def at(self, index: int | slice) -> "Leader":
-        """Return the orbit at one of the times, or at a slice of them."""
+    def at(self, index: int | slice | IntArray) -> "Leader":
+        """Return the orbit at one of the times, or at some of them."""
         return Leader(*(values[index] for values in self))
 
 

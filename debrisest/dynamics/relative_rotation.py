@@ -17,6 +17,7 @@ from debrisest.arrays import Array
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import Leader
+from debrisest.dynamics.substeps import parts, substeps
 
 
 def rotate(q: NDArray[Any], v: NDArray[Any], raw: bool = False) -> NDArray[Any]:
@@ -40,8 +41,10 @@ def rotation_derivative(
 
     ``slope (..., 3)`` as of `inertia_ratios.slopes`, which are constant and dear to compute.
     """
-    spin, spin_up = float(leader.rate), float(leader.acceleration)
-    rate_t = unrotate(q, rate + np.array([0.0, 0.0, spin]), raw)
+    spin, spin_up = leader.rate, leader.acceleration
+    total = rate.copy()
+    total[..., 2] += spin
+    rate_t = unrotate(q, total, raw)
     acceleration = rotate(q, slope * inertia_ratios.rate_products(rate_t), raw)
     acceleration[..., 0] += spin * rate[..., 1]
     acceleration[..., 1] -= spin * rate[..., 0]
@@ -59,14 +62,48 @@ def rotation_step(
     step: float,
     raw: bool = False,
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Rate and ``q_lt`` after one classical Runge-Kutta step, which may go back in time."""
+    """Rate and ``q_lt`` after a step, which may go back in time, by classical Runge-Kutta.
+
+    ``leader`` is the orbit at the start, the middle and the end of the step; of a fast target the
+    step is divided (`debrisest.dynamics.substeps`), and the orbit between is interpolated.
+    """
+    count = substeps(np.linalg.norm(rate.real, axis=-1) + abs(leader[0].rate), step)
+    for i, part in parts(step, count):
+        at = leader if part is step else _interpolated(leader, i / count, 0.5 / count)
+        rate, q = _runge_kutta(rate, q, slope, at, part, raw)
+    return rate, q
+
+
+def _runge_kutta(
+    rate: NDArray[Any],
+    q: NDArray[Any],
+    slope: NDArray[Any],
+    leader: tuple[Leader, Leader, Leader],
+    step: float | Array,
+    raw: bool,
+) -> tuple[NDArray[Any], NDArray[Any]]:
     start, middle, end = leader
-    half, sixth = 0.5 * step, step / 6.0
+    full = np.asarray(step)[..., None]
+    half, sixth = 0.5 * full, full / 6.0
     w1, q1 = rotation_derivative(rate, q, slope, start, raw)
     w2, q2 = rotation_derivative(rate + half * w1, q + half * q1, slope, middle, raw)
     w3, q3 = rotation_derivative(rate + half * w2, q + half * q2, slope, middle, raw)
-    w4, q4 = rotation_derivative(rate + step * w3, q + step * q3, slope, end, raw)
+    w4, q4 = rotation_derivative(rate + full * w3, q + full * q3, slope, end, raw)
     return rate + sixth * (w1 + 2.0 * (w2 + w3) + w4), q + sixth * (q1 + 2.0 * (q2 + q3) + q4)
+
+
+def _interpolated(
+    leader: tuple[Leader, Leader, Leader], share: Array, half: Array
+) -> tuple[Leader, Leader, Leader]:
+    """Orbit at these shares of the whole step, half a substep and a substep later, by a parabola.
+
+    Exact at the start, the middle and the end; the orbit hardly bends within a step.
+    """
+    moments = []
+    for at in (share, share + half, share + 2.0 * half):
+        u, v, w = (1.0 - 2.0 * at) * (1.0 - at), 4.0 * at * (1.0 - at), at * (2.0 * at - 1.0)
+        moments.append(Leader(*(u * a + v * b + w * c for a, b, c in zip(*leader))))
+    return moments[0], moments[1], moments[2]
 
 
 def rotation_by_quaternion(q: Array, v: Array, raw: bool = False) -> Array:

@@ -7,6 +7,17 @@ from debrisest.arrays import Array, IntArray
 from debrisest.filters.model import add
 
 
+class Doubt(NamedTuple):
+    """A number that the model holds at zero, and that the measurements can speak against."""
+
+    reason: str
+    """What to say if they do; ``{size}`` is the number times `scale`, ``{value}`` its sigmas."""
+    scale: float
+    column: Callable[[Array, Array, Array, Array], Array]
+    """(states, sensitivities, measurements, derivative) of all epochs, from 0 on, as `trajectory`
+    and `rows` give them -> derivative of the measurements by the number, (run, epoch, m)."""
+
+
 class ReplayModel(NamedTuple):
     """A deterministic system whose whole motion follows from its state at epoch 0.
 
@@ -46,6 +57,10 @@ class ReplayModel(NamedTuple):
     """Of the plain errors."""
     displace: Callable[[Array, Array], Array] = add
     """Exact inverse of `difference`, physical or not, with which a bound's errors make states."""
+    excess: Callable[[Array, Array], tuple[Array, Array]] | None = None
+    """(state, step in plain errors (run, n_e)) -> what `retract` limits of a step: its derivative
+    (run, c, n_e), and by how much it has to change (run, c), zero where it need not."""
+    doubts: tuple[Doubt, ...] = ()
     select: Callable[[IntArray], "ReplayModel"] | None = None
     """The model of some runs; without it, the model is the same for all."""
 

@@ -104,6 +104,51 @@ def cost_test(cost: Array, dof: Array | IntArray) -> SelfTest:
     )
 
 
+def innovation_test(nis: Array, dof: Array | IntArray) -> SelfTest:
+    """Test the squared innovations of a filter, ``(run, time)`` each, against their chi-square."""
+    freedom = dof.sum(-1)
+    return SelfTest(
+        np.where(dof > 0, nis, 0.0).sum(-1) / np.maximum(freedom, 1),
+        _mean_limit(freedom),
+        "squared innovations are {value} of what the filter states in the mean, at most {limit} "
+        "by chance",
+    )
+
+
+def missed_test(matched: Array, looked: Array, expected: float) -> SelfTest:
+    """Test the number of views (run,) in which the target's gate was empty, of those `looked` at.
+
+    ``expected`` is the probability that its detection is there and within the gate.
+    """
+    views = np.maximum(looked, 1)
+    return SelfTest(
+        1.0 - matched / views,
+        1.0 - expected + _SIGMAS * np.sqrt(np.maximum(expected * (1.0 - expected), 1e-4) / views),
+        "in a share of {value} of the views nothing lay where the target was expected, {limit} at "
+        "most by chance: the track is lost, or the noise larger than given",
+    )
+
+
+def crowd_test(crowded: Array, looked: Array) -> SelfTest:
+    """Test how often (run,) a filter that takes the nearest point for certain had to choose."""
+    return SelfTest(
+        crowded / np.maximum(looked, 1),
+        0.01,
+        "in a share of {value} of the views more than one point lay within the gate, and the "
+        "nearest was taken for certain; weigh them instead",
+    )
+
+
+def white_test(product: Array, square: Array) -> SelfTest:
+    """Test whether innovations depend on those before them: sums (run,) of products, of squares."""
+    return SelfTest(
+        np.abs(product) / np.sqrt(np.where(square > 0.0, square, np.nan)),
+        _SIGMAS,
+        "innovations follow those before them by {value} sigma, {limit} at most by chance: "
+        "something moves or errs in a way that the model does not have",
+    )
+
+
 def block_test(sums: Array, fitted: float) -> SelfTest:
     """Test normalised sums of residuals over blocks of time, ``(run, ...)``, NaN where nothing is.
 

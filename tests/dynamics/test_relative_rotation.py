@@ -1,6 +1,7 @@
 """Relative rotation against the rotation matrix, integration of Euler's equations, and limits."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
@@ -108,3 +109,25 @@ def test_steps_and_closed_form_match_inertial_integration(seed):
         assert error.magnitude() < angle
     np.testing.assert_allclose(exact_rate[-1], expected_rate, atol=1e-11)
     np.testing.assert_allclose(stepped_rate, expected_rate, atol=1e-7)
+
+
+@pytest.mark.parametrize("back", [False, True])
+def test_a_fast_target_is_followed_over_long_steps(back):
+    """At 20 deg/s, 5 s to a step: one Runge-Kutta step would be off by a degree each time."""
+    step, moments = -5.0 if back else 5.0, np.array([0.83, 1.0, 1.083])
+    times = np.linspace(0.0, 10 * step, 21)
+    leader = leader_orbit(times + 100.0, AXIS, ECCENTRICITY, 0.3)
+    k = ratios(moments)
+    q = np.array([[0.5, 0.5, 0.5, 0.5], [0.0, 0.0, 0.6, 0.8]])
+    rate = np.radians([[12.0, -12.0, 10.0], [0.1, -0.1, 0.2]])
+    exact_q, exact_rate = exact_rotation(times, q, rate, np.tile(k, (2, 1)), leader)
+    alone_q, alone_rate = q[1:], rate[1:]
+    for i in range(10):
+        moments_of_step = leader.at(2 * i), leader.at(2 * i + 1), leader.at(2 * i + 2)
+        rate, q = rotation_step(rate, q, slopes(k), moments_of_step, step)
+        alone_rate, alone_q = rotation_step(alone_rate, alone_q, slopes(k), moments_of_step, step)
+    np.testing.assert_allclose(rate, exact_rate[:, -1], atol=2e-6)
+    unit = q / np.linalg.norm(q, axis=-1, keepdims=True)
+    assert np.abs(np.sum(unit * exact_q[:, -1], axis=-1)).min() > 1 - 1e-9
+    np.testing.assert_array_equal(q[1:], alone_q)
+    np.testing.assert_array_equal(rate[1:], alone_rate)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares, lsq_linear
 
 from debrisest.filters.replay.gauss_newton import gauss_newton
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
@@ -257,3 +258,51 @@ def test_what_the_gate_rejects_counts_in_neither_cost():
         excess = estimates.counts["cost_of_truth"][:, -1] - estimates.counts["cost"][:, -1]
         assert excess.min() > -1e-6
         assert excess.max() < 40
+
+
+def test_a_limited_state_is_the_best_within_its_limit():
+    """As a bounded least squares solver has it: what is free makes up for what is held."""
+    prior, covariance, measured, _ = data(8)
+    model, limit = linear_model(), 0.5 * prior[:, 0].min()
+    whole = model.retract
+
+    def cut(state, error):
+        moved = whole(state, error)
+        moved[:, 0] = np.minimum(moved[:, 0], limit)
+        return moved
+
+    def excess(state, step):
+        rows = np.tile([[[1.0, 0.0]]], (len(state), 1, 1))
+        return rows, np.minimum(limit - state[:, :1] - step[:, :1], 0.0)
+
+    arc = measured_arc(model, prior, covariance, measured)
+    begin = np.minimum(prior, limit)
+    limited = model._replace(retract=cut, excess=excess)
+    solution = gauss_newton(limited, arc, begin, EPOCHS - 1, 10)
+    assert solution.converged.all()
+    found = solution.at.state + solution.step
+    rows, root = rows_of(EPOCHS - 1)
+    held = 0
+    for run in range(RUNS):
+        right = np.concatenate([root @ prior[run], (measured[run] / SIGMA).ravel()])
+        best = lsq_linear(rows, right, (-np.inf, [limit, np.inf]), tol=1e-14)
+        np.testing.assert_allclose(found[run], best.x, atol=1e-6)
+        assert solution.cost[run] == pytest.approx(2.0 * best.cost, rel=1e-9)
+        held += abs(best.x[0] - limit) < 1e-9
+    assert 0 < held < RUNS
+
+
+def test_nis_of_the_first_epoch_is_the_cost_that_is_left():
+    """With a curved sensor, whose first linearisation promises something else."""
+    shape, slope = (lambda x: x + 0.3 * x**3), (lambda x: 1 + 0.9 * x**2)
+    prior, covariance, measured, _ = data(9, shape)
+    found = replay(linear_model(shape, slope), prior, covariance, measured, keep=[0])
+    root = np.linalg.inv(np.linalg.cholesky(COVARIANCE))
+    for run in range(RUNS):
+
+        def residual(x, run=run):
+            shown = H @ shape(x)
+            return np.concatenate([root @ (x - prior[run]), (measured[run, 0] - shown) / SIGMA])
+
+        least = least_squares(residual, prior[run], xtol=1e-14, ftol=1e-14)
+        assert found.nis[run, 0] == pytest.approx(2.0 * least.cost, abs=0.02)

@@ -27,7 +27,7 @@ def errors(test, states):
 def test_filter_and_smoother_reach_the_bound(fast):
     """Limits are three sigma or more of 16 runs, whatever the seed."""
     last = fast.measured.shape[1] - 1
-    filtered = fast.estimate(also=[last])
+    filtered = fast.estimate()
     final = smooth(fast.model, fast.prior, fast.covariance, fast.measured, filtered)
     assert np.all(filtered.status == ReplayStatus.CONVERGED.sentence)
     assert np.all(final.status == ReplayStatus.CONVERGED.sentence)

@@ -96,7 +96,7 @@ def test_runge_kutta_follows_the_textbook(name: str) -> None:
 def test_the_steps_have_their_order(step: Any, order: int) -> None:
     moments, rate = BODIES["slender"]
     errors = []
-    for length in (0.5, 0.25):
+    for length in (0.08, 0.04):  # so short that no step is divided
         times = np.arange(0.0, 20.0 + length / 2, length)
         last = propagated(step, state_of(moments, rate), times)[-1, problem.RATE]
         errors.append(np.linalg.norm(last - textbook(moments, rate, np.array([0, 20.0]))[-1]))

@@ -42,6 +42,8 @@ class Judged(NamedTuple):
     distance: Array
     """Squared, infinite where not validated."""
     probability: Array
+    combined: Array
+    """Combined innovation of each sensor, (run, track, sensor, d), zero where it has none."""
 
 
 class _Moments(NamedTuple):
@@ -75,6 +77,7 @@ def update(
     shown = h @ tracks.covariance[:, :, None] @ np.swapaxes(h, -2, -1)
     judged, innovation = _judge(scan.innovation, usable, shown + noise, gate, weigh)
     moments = _moments(innovation, judged.probability)
+    judged = judged._replace(combined=moments.mean)
     used = np.asarray(judged.valid.any(-1))[..., None, None]
     return _moved(tracks, np.where(used, h, 0.0), shown, noise, moments), judged
 
@@ -89,7 +92,7 @@ def _judge(
     distance = (nu * white).sum(-1)
     valid = present & (distance <= gate)
     distance = np.where(valid, distance, np.inf)
-    return Judged(present, valid, distance, weigh(distance)), nu
+    return Judged(present, valid, distance, weigh(distance), nu), nu
 
 
 def _moments(innovation: Array, probability: Array) -> _Moments:

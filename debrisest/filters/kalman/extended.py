@@ -79,7 +79,9 @@ def extended(
     x- to x_i as it is, as any extended filter does from x- to its estimate.
 
     A `gate` judges the innovations at x- and has those that it rejects treated as not observed;
-    NIS counts the others, where a gate reopened with the prior that it doubted and enlarged.
+    NIS counts the others, where a gate reopened with the prior that it doubted and enlarged. It is
+    what the last step leaves of the cost: linearised at x-, a far prior gives a figure that says
+    nothing of the fit.
     """
     settings = _settings(iterations, tolerance, stop)
     epochs, components = measurements.shape[1:]
@@ -132,8 +134,8 @@ def _update(
     if keeper is not None:
         prior, counts["reopened"] = _gated(model, keeper, prior, innovation, response)
     step = _step(model, prior, innovation, response)
-    counts |= {"nis": step.nis.copy(), "nis_dof": prior.used.sum(-1)}
     state, counts["updates"] = _iterate(model, settings, prior, step)
+    counts |= {"nis": step.nis, "nis_dof": prior.used.sum(-1)}
     counts["rejected"] = (measured & ~prior.used).sum(-1)
     return state, _joseph(model, prior, step), counts
 

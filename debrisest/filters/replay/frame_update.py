@@ -7,11 +7,11 @@ import numpy as np
 from debrisest.arrays import Array, IntArray
 from debrisest.filters import weights
 from debrisest.filters.linear_algebra import scaled_inverse, scaled_solve
+from debrisest.filters.replay.gauss_newton import Solution
 from debrisest.filters.replay.measured_arc import MeasuredArc, normal_equations
 from debrisest.filters.replay_model import ReplayModel
 
-FRAME_ITERATIONS = 3
-_FRAME_CONVERGED = 1e-3
+_ITERATIONS, _CONVERGED = 3, 1e-3
 
 
 class Belief(NamedTuple):
@@ -39,19 +39,20 @@ def predict(model: ReplayModel, belief: Belief, k: int) -> Belief:
 
 
 def update(
-    model: ReplayModel, predicted: Belief, arc: MeasuredArc, k: int, iterations: int, gate: bool
+    model: ReplayModel, predicted: Belief, arc: MeasuredArc, k: int, gate: bool
 ) -> tuple[Belief, Frame]:
     """Iterated update with the measurements of epoch k, each run until it has converged.
 
     In information form a step also promises its decrease of the cost, which says when to end: apart
-    from `debrisest.filters.iterated`, which asks by how much a gain moves the state.
+    from `debrisest.filters.iterated`, which asks by how much a gain moves the state. NIS is the
+    cost that is left in the end.
 
     With `gate`, the weights of the epoch's rejected rows are set to zero in `arc`.
     """
     frame = slice(k, k + 1)
     state, information = predicted.state.copy(), predicted.information.copy()
-    runs = np.arange(len(state))
-    for iteration in range(iterations):
+    runs, nis = np.arange(len(state)), np.empty(len(state))
+    for iteration in range(_ITERATIONS):
         at = state[runs]
         part = model.of(runs)
         states, sensitivity = part.trajectory(at, k, k)
@@ -65,14 +66,26 @@ def update(
         terms = normal_equations(rows, residual, arc.weight[runs, frame])
         total = predicted.information[runs] + terms[0]
         offset = part.difference(predicted.state[runs], at)
-        right = terms[1] + (predicted.information[runs] @ offset[..., None])[..., 0]
+        pull = (predicted.information[runs] @ offset[..., None])[..., 0]
+        right = terms[1] + pull
         step = scaled_solve(total, right)
         decrement = (step * right).sum(-1)
-        if iteration == 0:
-            nis = terms[2] - decrement
+        nis[runs] = terms[2] + (offset * pull).sum(-1) - decrement
         state[runs], information[runs] = part.retract(at, step), total
-        runs = runs[~(decrement < _FRAME_CONVERGED)]
+        runs = runs[~(decrement < _CONVERGED)]
         if len(runs) == 0:
             break
     used = (arc.weight[:, k] > 0.0).sum(-1)
     return Belief(state, information), Frame(nis, used, arc.seen[:, k].sum(-1) - used)
+
+
+def first_frame(arc: MeasuredArc, solution: Solution, k: int) -> Frame:
+    """Figures of the first measured epoch by its replay, since no update comes so far at once.
+
+    What would be rejected there does not count, whatever its weight.
+    """
+    residual = solution.at.residual[:, k]
+    used = arc.seen[:, k] & ((arc.weight[:, k] == 1.0) | (weights.hard(residual) > 0.0))
+    weight = np.where(used, 1.0 - arc.weight[:, k] ** 2, -(arc.weight[:, k] ** 2))
+    nis = solution.cost + (weight * residual**2).sum(-1)
+    return Frame(nis, used.sum(-1), (arc.seen[:, k] & ~used).sum(-1))

@@ -6,14 +6,17 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.descent import Damping, descend
-from debrisest.filters.linear_algebra import scaled_solve
+from debrisest.filters.linear_algebra import scaled_inverse, scaled_solve, solve
 from debrisest.filters.replay.measured_arc import Linearization, MeasuredArc, linearize
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import take
 
 CONVERGED = 1e-2
-"""The predicted decrease of the cost below which the iteration ends."""
+"""The predicted decrease of the cost below which the iteration ends: a step of 0.1 sigma, in all
+directions together, which is taken yet."""
 _FIRST_DAMPING, _LEAST_DAMPING = 0.1, 0.01
+_LIMITS = 2
+"""Rounds in which limits of a step are found, one of which may bring up the next."""
 
 
 class Solution(NamedTuple):
@@ -22,7 +25,7 @@ class Solution(NamedTuple):
     at: Linearization
     step: Array
     decrement: Array
-    """Decrease of the cost that the undamped step promises, (run,)."""
+    """Decrease of the cost that the undamped step promises, (run,), within the model's limits."""
 
     @property
     def converged(self) -> BoolArray:
@@ -31,29 +34,36 @@ class Solution(NamedTuple):
 
     @property
     def cost(self) -> Array:
-        """Cost after the step, to second order."""
-        return self.at.cost - self.decrement
+        """Cost after the step, to second order; where that promises much, the cost before it."""
+        return np.where(self.converged, self.at.cost - self.decrement, self.at.cost)
 
 
 def gauss_newton(
-    model: ReplayModel, arc: MeasuredArc, state: Array, last: int, iterations: int
+    model: ReplayModel,
+    arc: MeasuredArc,
+    state: Array,
+    last: int,
+    iterations: int,
+    tolerance: float = CONVERGED,
 ) -> Solution:
     """Minimise the cost of epochs 0 to ``last`` from ``state (run, n)`` at epoch 0.
 
     A step that raises the cost is taken back, and the next one is damped by a part of the prior's
     information (the information itself as a measure stalls in the long valleys of such costs).
-    `iterations` counts linearisations; runs stop one by one.
+    `iterations` counts linearisations; runs stop one by one, where the decrease that the next step
+    promises is below `tolerance`.
     """
 
     def step(at: Linearization, runs: IntArray, damping: Array) -> tuple[Array, Array]:
-        return _step(at, arc.information[runs], damping)
+        return _step(model.of(runs), at, arc.information[runs], damping)
 
     def trial(best: Linearization, runs: IntArray, step: Array) -> Linearization:
         part = model.of(runs)
         return linearize(part, take(arc, runs), move(part, best.state[runs], step), last)
 
     first = linearize(model, arc, state, last)
-    return Solution(*descend(first, lambda at: at.cost, step, trial, _DAMPING, iterations))
+    damping = Damping(0.0, _next_damping, lambda _, promise, __: promise < tolerance)
+    return Solution(*descend(first, lambda at: at.cost, step, trial, damping, iterations))
 
 
 def move(model: ReplayModel, state: Array, step: Array) -> Array:
@@ -61,19 +71,44 @@ def move(model: ReplayModel, state: Array, step: Array) -> Array:
     return model.retract(state, (model.chart(state) @ step[..., None])[..., 0])
 
 
-def _step(at: Linearization, prior: Array, damping: Array) -> tuple[Array, Array]:
-    step = scaled_solve(at.information, at.gradient)
-    decrement = (at.gradient * step).sum(-1)
+def _step(
+    model: ReplayModel, at: Linearization, prior: Array, damping: Array
+) -> tuple[Array, Array]:
+    """Damped step, and the decrease of the cost that the undamped one promises."""
+    step = _limited_step(model, at, at.information)
+    curved = (at.information @ step[..., None])[..., 0]
+    decrement = (step * (2.0 * at.gradient - curved)).sum(-1)
     damped = np.flatnonzero(damping > 0.0)
     if len(damped):
-        matrix = at.information[damped] + damping[damped, None, None] * prior[damped]
-        step[damped] = scaled_solve(matrix, at.gradient[damped])
+        part = take(at, damped)
+        matrix = part.information + damping[damped, None, None] * prior[damped]
+        step[damped] = _limited_step(model.of(damped), part, matrix)
     return step, decrement
+
+
+def _limited_step(model: ReplayModel, at: Linearization, matrix: Array) -> Array:
+    """Best step by a matrix of second derivatives (run, n_e, n_e) that `retract` will not cut.
+
+    What is limited keeps to its limit, and all else is the best that goes with it.
+    """
+    step = scaled_solve(matrix, at.gradient)
+    if model.excess is None:
+        return step
+    limited = np.zeros((len(step), 1), dtype=np.bool_)
+    for _ in range(_LIMITS):
+        rows, excess = model.excess(at.state, step)
+        limited = limited | (excess != 0.0)
+        runs = np.flatnonzero((excess != 0.0).any(-1))
+        if len(runs) == 0:
+            break
+        held = np.where(limited[runs, :, None], rows[runs], 0.0)
+        toward = np.swapaxes(scaled_inverse(matrix[runs]) @ np.swapaxes(held, -1, -2), -1, -2)
+        free = np.where(limited[runs], 0.0, 1.0)[..., None] * np.eye(held.shape[1])
+        force = solve(held @ np.swapaxes(toward, -1, -2) + free, excess[runs, :, None])
+        step[runs] += (np.swapaxes(force, -1, -2) @ toward)[:, 0]
+    return step
 
 
 def _next_damping(damping: Array, better: BoolArray) -> Array:
     less = np.where(damping / 10.0 < _LEAST_DAMPING, 0.0, damping / 10.0)
     return np.where(better, less, np.maximum(_FIRST_DAMPING, 10.0 * damping))
-
-
-_DAMPING = Damping(0.0, _next_damping, lambda _, promise, __: promise < CONVERGED)

@@ -1,9 +1,10 @@
 """Maximum a posteriori estimate at every epoch: an iterated filter that is re-anchored by replays.
 
-At the anchors, epochs in geometric progression, Gauss-Newton runs over all measurements so far, so
-that no derivative at a superseded state is left in the information; between them an iterated
-extended Kalman filter, in information form and in the state's own chart, carries the estimate on.
-Nothing is tuned. The measurements are kept, and the average cost of an epoch grows slowly.
+At the anchors, epochs in geometric progression, those whose covariance is kept, and the last,
+Gauss-Newton runs over all measurements so far, so that no derivative at a superseded state is left
+in the information; between them an iterated extended Kalman filter, in information form and in the
+state's own chart, carries the estimate on. Nothing is tuned. The measurements are kept, and the
+average cost of an epoch grows slowly.
 """
 
 from collections.abc import Sequence
@@ -13,9 +14,9 @@ import numpy as np
 from debrisest.arrays import Array, Data, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.linear_algebra import scaled_inverse
-from debrisest.filters.replay.cost import cost_of
-from debrisest.filters.replay.frame_update import FRAME_ITERATIONS, Belief, predict, update
-from debrisest.filters.replay.gauss_newton import Solution, gauss_newton, move
+from debrisest.filters.replay.cost import Reference, reference_of
+from debrisest.filters.replay.frame_update import Belief, first_frame, predict, update
+from debrisest.filters.replay.gauss_newton import CONVERGED, Solution, gauss_newton, move
 from debrisest.filters.replay.measured_arc import MeasuredArc, measured_arc
 from debrisest.filters.replay.robust import robust_newton
 from debrisest.filters.replay_model import ReplayModel
@@ -24,7 +25,10 @@ from debrisest.filters.status import ReplayStatus
 
 RATIO = 1.25
 """Of successive anchors; at 1 every epoch is one."""
-_START_ANCHORS, _START_ITERATIONS, _ANCHOR_ITERATIONS, _SMOOTHER_ITERATIONS = 2, 12, 4, 30
+_ITERATIONS = 30
+_IN_PASSING = 0.25
+"""Of anchors whose result is not kept, the predicted decrease of the cost below which the step is
+taken without another look: what it leaves undone is of second order, below 0.01 in general."""
 _FRESH_STARTS = 3
 """Anchors at which, with a gate, a start from their own epoch competes with the filter's."""
 
@@ -37,19 +41,20 @@ def replay(
     ratio: float = RATIO,
     gate: bool = False,
     keep: Sequence[int] = (),
-    also: Sequence[int] = (),
     reference: Array | None = None,
 ) -> Estimates:
     """Estimate a batch of runs from the prior ``(run, n)`` of epoch 0 and its plain covariance.
 
     `covariance` is (run, n_e, n_e), `measured` (run, time, m) with NaN = not observed; `keep` lists
-    the epochs whose covariance is wanted, `also` epochs to replay at besides the anchors. With
-    `gate`, outliers are kept out: by their innovation between anchors; at every anchor the
-    residuals of all epochs decide again, so that nothing is locked out for good. `reference`
-    (run, n) is a state of epoch 0, the truth, whose cost is wanted at the kept epochs as well, by
-    the same measurements; no estimate depends on it.
+    the epochs whose covariance is wanted. With `gate`, outliers are kept out: by their innovation
+    between anchors; at every anchor the residuals of all epochs decide again, so that nothing is
+    locked out for good. `reference` (run, n) is a state of epoch 0, the truth, whose cost is wanted
+    at the kept epochs as well, by the same measurements; no estimate depends on it.
 
-    Counts are `cost`, at anchors and kept epochs, `cost_of_truth` at kept ones, and `rejected`.
+    NIS is the rise of the least cost by what an epoch shows, after all iterations of its update; of
+    the first measured epoch it is the least cost itself. The status speaks of the last epoch.
+
+    Counts are `cost`, at anchors, `cost_of_truth` at kept epochs, and `rejected`.
     """
     _require_shapes(model, prior, measured, ratio)
     epochs, counts = measured.shape[1], {"cost": np.nan}
@@ -59,7 +64,8 @@ def replay(
     writer = EstimatesWriter(model.error_names, prior, *known, outcomes=ReplayStatus)
     with np.errstate(all="ignore"):
         arc = measured_arc(model, prior, covariance, measured)
-        _filter(model, arc, _schedule(arc, ratio, also), gate, writer, reference)
+        beside = None if reference is None else reference_of(model, arc, reference)
+        _filter(model, arc, _schedule(arc, ratio, [*keep, epochs - 1]), gate, writer, beside)
     return writer.estimates()
 
 
@@ -87,16 +93,19 @@ def smooth(
         arc = take(measured_arc(model, prior, covariance, measured), writer.runs)
         start = model.rewind(end[0][writer.runs], last)
         if gate:
-            solution = robust_newton(model, arc, [start], last, last, _SMOOTHER_ITERATIONS)
+            solution = robust_newton(model, arc, [start], last, last, _ITERATIONS)
         else:
-            solution = gauss_newton(model, arc, start, last, _SMOOTHER_ITERATIONS)
+            solution = gauss_newton(model, arc, start, last, _ITERATIONS)
         best = move(model, solution.at.state, solution.step)
         states, sensitivity = model.trajectory(best, 0, last)
         spread = scaled_inverse(solution.at.information)
         for k in range(last + 1):
             transition = model.transition(sensitivity[:, k], 0, k)
             writer.write(k, states[:, k], transition @ spread @ np.swapaxes(transition, -1, -2))
-        writer.count(last, _costs(model, arc, writer, last, best, reference))
+        writer.count(last, {"cost": solution.cost})
+        if reference is not None:
+            beside = reference_of(model, arc, reference[writer.runs])
+            writer.count(last, {"cost_of_truth": beside.cost(arc.weight, last)})
     writer.conclude(_status(solution))
     found = writer.estimates()
     return found._replace(
@@ -117,7 +126,7 @@ def anchors(first: int, epochs: int, ratio: float = RATIO) -> list[int]:
 
 
 def _schedule(arc: MeasuredArc, ratio: float, also: Sequence[int]) -> list[int]:
-    """Epochs of the replays; the first of them is the first that any run has measurements of."""
+    """Epochs of the replays, ``also`` among them; the first is the first that any run measured."""
     epochs = arc.seen.shape[1]
     measured = np.flatnonzero(arc.seen.any(axis=(0, 2)))
     first = int(measured[0]) if len(measured) else epochs
@@ -130,7 +139,7 @@ def _filter(
     schedule: list[int],
     gate: bool,
     writer: EstimatesWriter,
-    reference: Array | None,
+    reference: Reference | None,
 ) -> None:
     going = writer.runs
     back = model.inverse_chart(arc.prior)
@@ -140,36 +149,23 @@ def _filter(
             break
         if len(going) < len(belief.state):
             model, belief, arc = model.of(going), take(belief, going), take(arc, going)
+            reference = None if reference is None else take(reference, going)
         if k > 0:
             belief = predict(model, belief, k)
-        iterations = 1 if k in schedule else FRAME_ITERATIONS
-        belief, frame = update(model, belief, arc, k, iterations, gate)
+        belief, frame = update(model, belief, arc, k, gate)
         figures: Data = frame._asdict()
         if k in schedule:
-            belief, solution = _replayed(model, belief, arc, k, schedule, gate)
+            tolerance = CONVERGED if writer.keeps(k) else _IN_PASSING
+            belief, solution = _replayed(model, belief, arc, k, schedule, gate, tolerance)
             figures["cost"] = solution.cost
             writer.conclude(_status(solution))
+            if k == schedule[0]:
+                figures |= first_frame(arc, solution, k)._asdict()
+            if reference is not None and writer.keeps(k):
+                figures["cost_of_truth"] = reference.cost(arc.weight, k)
         back = model.inverse_chart(belief.state)
         spread = back @ scaled_inverse(belief.information) @ np.swapaxes(back, -1, -2)
-        if writer.keeps(k):
-            start = model.rewind(belief.state, k)
-            figures |= _costs(model, arc, writer, k, start, reference)
         going = writer.record(k, belief.state, spread, figures)
-
-
-def _costs(
-    model: ReplayModel,
-    arc: MeasuredArc,
-    writer: EstimatesWriter,
-    last: int,
-    start: Array,
-    reference: Array | None,
-) -> Data:
-    """Costs of the estimate's motion and of the reference; what has no weight counts in neither."""
-    costs = {"cost": cost_of(model, arc, start, last)}
-    if reference is not None:
-        costs["cost_of_truth"] = cost_of(model, arc, reference[writer.runs], last)
-    return costs
 
 
 def _status(solution: Solution) -> IntArray:
@@ -177,7 +173,13 @@ def _status(solution: Solution) -> IntArray:
 
 
 def _replayed(
-    model: ReplayModel, belief: Belief, arc: MeasuredArc, k: int, schedule: list[int], gate: bool
+    model: ReplayModel,
+    belief: Belief,
+    arc: MeasuredArc,
+    k: int,
+    schedule: list[int],
+    gate: bool,
+    tolerance: float,
 ) -> tuple[Belief, Solution]:
     """Belief of epoch k by a replay of everything measured so far."""
     number = schedule.index(k)
@@ -185,11 +187,10 @@ def _replayed(
     if number == 0 or (gate and number < _FRESH_STARTS):
         shown = np.where(arc.seen[:, k], arc.measured[:, k], np.nan)
         starts.append(model.start(arc.prior, shown * model.sigma, k))
-    iterations = _START_ITERATIONS if number < _START_ANCHORS else _ANCHOR_ITERATIONS
     if gate:
-        solution = robust_newton(model, arc, starts, k, k - schedule[0] + 1, iterations)
+        solution = robust_newton(model, arc, starts, k, k - schedule[0] + 1, _ITERATIONS, tolerance)
     else:
-        solution = gauss_newton(model, arc, starts[0], k, iterations)
+        solution = gauss_newton(model, arc, starts[0], k, _ITERATIONS, tolerance)
     at = solution.at
     transition = model.transition(at.last_sensitivity, 0, k)
     to_chart = model.chart(at.last_state) @ transition

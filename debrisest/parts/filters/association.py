@@ -9,16 +9,28 @@ from debrisest.filters.association.single import associated, jointly_associated
 from debrisest.filters.association.weights import Validation, inverse_unit_ball, unit_ball
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.scan_model import ScanModel
+from debrisest.filters.self_test import (
+    SelfTest,
+    crowd_test,
+    innovation_test,
+    missed_test,
+    told,
+    white_test,
+)
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given, Positive
 
+_LINEARISED_ONCE = (
+    "linearised about the first guess for good, and what that costs is in no covariance; "
+    "relinearised_s, or linearised: estimate, corrects it"
+)
 Probability = Annotated[float, Field(gt=0, le=1)]
 
 
 class _Validating(FilterPart):
     """Keys of the filters that have to tell the target from clutter."""
 
-    version = 2
+    version = 3
     takes = "scan_model"
     runs_together = 200
     gate: Positive = 9.21
@@ -64,7 +76,9 @@ class AssociationFilter(_Validating):
             truth=given.known_truth if self.linearised == "truth" else None,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(found)
+        return _unlabelled(
+            found, self.validation, certain=self.method == "nearest", once=self._every(1.0) == 0
+        )
 
     def _every(self, step: float) -> int:
         if self.linearised == "estimate":
@@ -85,7 +99,7 @@ class JointAssociation(_Validating):
             stacked=self.stacked,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(found)
+        return _unlabelled(found, self.validation)
 
 
 class KnownAssociation(FilterPart):
@@ -103,14 +117,37 @@ class KnownAssociation(FilterPart):
             method="known",
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return counting(found, "repairs")
+        tests = [innovation_test(found.nis, found.nis_dof), _white(found)]
+        return told(counting(found, "repairs"), tests)
 
 
-def _unlabelled(found: Estimates) -> Estimates:
-    """Without NIS, which is not chi-square where detections are chosen by their distance."""
-    return counting(found, "repairs", "validated")._replace(
+def _unlabelled(
+    found: Estimates, validation: Validation, certain: bool = False, once: bool = False
+) -> Estimates:
+    """Without NIS, which is not chi-square where detections are chosen by their distance.
+
+    That only makes it smaller: what is too large for a chi-square says so all the same. The choice
+    may be taken for `certain`, the model be linearised `once`.
+    """
+    count = {name: found.counts[name].sum(-1) for name in ("looked", "matched", "crowded")}
+    likely = validation.detection_probability * validation.passing(2)
+    tests = [
+        missed_test(count["matched"], count["looked"], likely),
+        innovation_test(found.nis, found.nis_dof),
+        _white(found),
+    ]
+    if certain:
+        tests.append(crowd_test(count["crowded"], count["looked"]))
+    if once:
+        tests.append(SelfTest(np.ones(len(found.state)), 0.0, _LINEARISED_ONCE))
+    without = counting(found, "repairs", "validated")._replace(
         nis=np.full_like(found.nis, np.nan), nis_dof=np.zeros_like(found.nis_dof)
     )
+    return told(without, tests)
+
+
+def _white(found: Estimates) -> SelfTest:
+    return white_test(found.counts["product"].sum(-1), found.counts["square"].sum(-1))
 
 
 def counting(found: Estimates, *names: str) -> Estimates:

@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.assessment.consistency import normalized_square
 from debrisest.filters.association.single import associated
 from debrisest.filters.association.weights import Validation
 from debrisest.filters.bound.landmarks import landmark_bound
@@ -14,13 +15,15 @@ from debrisest.filters.estimates import Estimates
 from debrisest.filters.landmark_model import LandmarkModel, core_of, joined, points_of, split
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.scan_model import ScanModel
-from debrisest.filters.self_test import SelfTest, Verdict, cost_test, judged, lost_test
+from debrisest.filters.self_test import SelfTest, Verdict, cost_test, judged, lost_test, told
+from debrisest.filters.status import FilterStatus
 from debrisest.parts.filters.association import counting
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given
 
 _ALLOWED = 0.5
 """Sigmas by which a model may leave the truth: its errors' squares grow by less than a quarter."""
+_CHANCE = 1e-6
 
 
 class Efficient(FilterPart):
@@ -43,7 +46,7 @@ class Efficient(FilterPart):
         state = model.displace(truth, (chart @ error[..., None])[..., 0])
         to_state = model.inverse_chart(state[:, kept]) @ chart[:, kept]
         spread = to_state @ covariance @ np.swapaxes(to_state, -1, -2)
-        return _estimates(state, sigma, spread, kept)
+        return _judged(_estimates(state, sigma, spread, kept), error[:, -1], covariance[:, -1])
 
 
 class LandmarkBound(FilterPart):
@@ -98,7 +101,25 @@ class LinearisedAtTruth(FilterPart):
             truth=given.known_truth,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return counting(found, "repairs")
+        error = found.state[:, -1] - given.known_truth[:, -1]
+        return _judged(counting(found, "repairs"), error, found.covariance[:, -1])
+
+
+def _judged(found: Estimates, error: Array, covariance: Array) -> Estimates:
+    """Estimates of a bound that say whether their own errors at the end (run, n_e) fit it.
+
+    They do not where the filters' model does not follow the truth: then it bounds nothing.
+    """
+    from scipy.stats import chi2
+
+    n = error.shape[-1]
+    test = SelfTest(
+        normalized_square(error, covariance) / n,
+        float(chi2.isf(_CHANCE, n)) / n,
+        "this is no bound: its own squared errors are {value} of what it states, at most {limit} "
+        "by chance; the model does not follow the truth",
+    )
+    return told(found, [test])
 
 
 def _kept(times: list[float], given: Given) -> list[int]:
@@ -131,5 +152,5 @@ def _estimates(state: Array, sigma: Array, covariance: Array, kept: list[int]) -
         *(state, sigma, covariance, np.array(kept, dtype=np.int64)),
         nis=np.full((runs, epochs), np.nan),
         nis_dof=np.zeros((runs, epochs), dtype=np.int64),
-        status=np.array(["linearised at the truth"] * runs),
+        status=np.array([FilterStatus.FINISHED.sentence] * runs),
     )

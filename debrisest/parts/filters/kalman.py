@@ -10,6 +10,7 @@ from debrisest.filters.gate import Gate
 from debrisest.filters.kalman.extended import extended
 from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
+from debrisest.filters.self_test import innovation_test, told
 from debrisest.roles import FilterPart, Given, NonNegative, Positive
 
 KeptTimes = Annotated[
@@ -26,6 +27,7 @@ def kept_epochs(times: list[float], clock: Clock) -> list[int]:
 class Unscented(FilterPart):
     """The unscented Kalman filter; on a linear model the Kalman filter, unless not redrawn."""
 
+    version = 2
     takes = "model"
     runs_together = 100
     kind: Literal["unscented"]
@@ -38,7 +40,7 @@ class Unscented(FilterPart):
     def run(self, model: Model, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
         spread = UnscentedParameters(self.alpha, self.beta, self.kappa)
-        return unscented(
+        found = unscented(
             model,
             given.state,
             given.covariance,
@@ -47,11 +49,13 @@ class Unscented(FilterPart):
             keep=kept_epochs(self.keep_s, given.clock),
             redraw=self.redraw,
         )
+        return told(found, [innovation_test(found.nis, found.nis_dof)])
 
 
 class Extended(FilterPart):
     """The extended Kalman filter, or with more than one iteration the iterated one."""
 
+    version = 2
     takes = "model"
     runs_together = 100
     kind: Literal["extended"]
@@ -63,7 +67,7 @@ class Extended(FilterPart):
 
     def run(self, model: Model, given: Given) -> Estimates:
         """Return the estimates of all epochs."""
-        return extended(
+        found = extended(
             model,
             given.state,
             given.covariance,
@@ -74,3 +78,4 @@ class Extended(FilterPart):
             keep=kept_epochs(self.keep_s, given.clock),
             gate=Gate() if self.gate else None,
         )
+        return told(found, [innovation_test(found.nis, found.nis_dof)])

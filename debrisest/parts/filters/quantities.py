@@ -38,7 +38,7 @@ QUANTITIES = {
     "nees_dof": Quantity(TIME, "1", "errors that it counts, where the covariance was kept"),
     "w": Quantity(
         *(TIME, "1", "excess of the truth's cost over the estimate's per dimension", "1"),
-        ChiSquare("w_dof", white=False),
+        ChiSquare("w_dof", white=False, of_costs=True),
     ),
     "w_dof": Quantity(TIME, "1", "errors that it counts, where costs were kept"),
 }

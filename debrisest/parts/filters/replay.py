@@ -6,7 +6,9 @@ from pydantic import Field
 
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.replay.replay import RATIO, replay, smooth
+from debrisest.filters.replay.self_tests import self_tests
 from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.self_test import told
 from debrisest.filters.status import ReplayStatus
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given
@@ -15,7 +17,7 @@ from debrisest.roles import FilterPart, Given
 class Replay(FilterPart):
     """Maximum a posteriori at every epoch of all measurements so far, or of all there are."""
 
-    version = 2
+    version = 3
     takes = "replay_model"
     kind: Literal["replay"]
     smoother: bool = False
@@ -32,4 +34,5 @@ class Replay(FilterPart):
         if self.smoother:
             found = smooth(model, *known, found, gate=self.gate, keep=keep, reference=truth)
         converged = found.status == ReplayStatus.CONVERGED.sentence
-        return found._replace(counts=found.counts | {"converged": converged})
+        tests = self_tests(model, *known, found, self.gate)
+        return told(found._replace(counts=found.counts | {"converged": converged}), tests)

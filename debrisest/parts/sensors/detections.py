@@ -58,7 +58,8 @@ class Detections(SimulationPart):
         *("true_pixel", "focal_px", "image_half_size"),
     )
     truths = ("target_detection",)
-    knows = ("start_companion_position", "start_companion_velocity")
+    version = 2
+    knows = ("pixel_noise", "start_companion_position", "start_companion_velocity")
     measures = ("measured_pixel",)
     tried = True
     kind: Literal["detections"]
@@ -71,7 +72,9 @@ class Detections(SimulationPart):
     @property
     def given(self) -> tuple[str, ...]:
         """Return the datasets that this sensor gives: guesses only of companions that there are."""
-        return super().given if self.companions else (*self.truths, *self.measures)
+        if self.companions:
+            return super().given
+        return (*self.truths, "pixel_noise", *self.measures)
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the points (run, time, observer, detection, 2) and which is the debris' own."""
@@ -92,7 +95,12 @@ class Detections(SimulationPart):
         points = np.where(inside[..., None], points, np.nan)
         rank = draws.uniform(Stream.CLUTTER, points.shape[1:-1])
         detected, own = unlabelled(points, rank)
-        return result | {"measured_pixel": detected, "target_detection": own.astype(np.float64)}
+        sigma = np.sqrt(self.pixel_noise_px**2 + self.whole_pixels / 12)
+        return result | {
+            "measured_pixel": detected,
+            "target_detection": own.astype(np.float64),
+            "pixel_noise": np.full(len(own), sigma),
+        }
 
     def _with_clutter(self, points: Array, pixel: Array, draws: Draws) -> Array:
         if self.clutter is None:

@@ -25,7 +25,9 @@ class OrbitFromPixels(ProblemPart):
     true_state = ("orbit_position", "orbit_velocity")
     kind: Literal["orbit_from_pixels"]
     acceleration_noise_m_s2: NonNegative = Field(description="1 sigma per axis, over each step")
-    pixel_variance_px2: Positive = Field(1.0, description="of each coordinate")
+    pixel_variance_px2: Positive | None = Field(
+        None, description="of each coordinate; the sensor's own if left out"
+    )
     updates_in_control: bool = Field(False, description="use what is seen while cameras turn")
     attitude_bias: bool = Field(False, description="estimate the errors of the known attitudes")
     tracks: Literal["debris", "all"] = Field("debris", description="all: companions as well")
@@ -45,7 +47,9 @@ class OrbitFromPixels(ProblemPart):
     @property
     def needed(self) -> tuple[str, ...]:
         """Return the datasets that are needed, of labelled detections the true labels too."""
-        return (*self.needs, "target_detection") if self.detections == "own" else self.needs
+        own = ["target_detection"] if self.detections == "own" else []
+        noise = ["pixel_noise"] if self.pixel_variance_px2 is None else []
+        return (*self.needs, *own, *noise)
 
     @property
     def start_needed(self) -> tuple[str, ...]:
@@ -77,10 +81,18 @@ class OrbitFromPixels(ProblemPart):
                 to_camera=_time_first(to_camera),
                 scale=data["focal_px"],
                 acceleration_noise=self.acceleration_noise_m_s2,
-                pixel_variance=self.pixel_variance_px2,
+                pixel_variance=self._variance(data),
                 with_bias=self.attitude_bias,
             )
         )
+
+    def _variance(self, data: Data) -> float:
+        if self.pixel_variance_px2 is not None:
+            return self.pixel_variance_px2
+        noise = float(data["pixel_noise"][0])
+        if not noise > 0.0:
+            raise ValueError("points without noise weigh infinitely; give pixel_variance_px2")
+        return noise**2
 
     def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return state (run, n) and covariance (run, n, n); with tracks (run, track, ...)."""

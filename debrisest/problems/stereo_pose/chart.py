@@ -8,17 +8,17 @@ and the points by ``p_i``, on which the measurements depend nearly linearly, whi
 attitude, which no measurement shows alone, lie along axes of the chart.
 """
 
-from typing import Any
+from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
+from debrisest.dynamics.relative_arc import rotation_arc
 from debrisest.dynamics.relative_orbit import translation_step
-from debrisest.dynamics.relative_rotation import rotation_step
+from debrisest.dynamics.relative_pose import exact_rotation
 from debrisest.problems.stereo_pose.model import (
     POINTS,
     POSITION,
@@ -30,9 +30,6 @@ from debrisest.problems.stereo_pose.model import (
 )
 
 ATTITUDE_ERROR, K_ERROR, POINT_ERROR = slice(9, 12), slice(12, 14), slice(14, None)
-_COMPLEX_STEP = 1e-30
-_TURNING = 8
-"""Errors that the rotation depends on: rate, attitude, ratios."""
 
 
 def robocentric(state: Array, points: int) -> Array:
@@ -78,6 +75,13 @@ def retract(state: Array, error: Array, points: int) -> Array:
     return result
 
 
+def excess(state: Array, step: Array) -> tuple[Array, Array]:
+    """Derivative ``(..., 2, n_e)`` of two slopes of the inertia, and what `retract` cuts."""
+    rows = np.zeros((*step.shape[:-1], 2, step.shape[-1]))
+    rows[..., K_ERROR] = inertia_ratios.slopes_by_ratios(state[..., K])
+    return rows, inertia_ratios.excess(state[..., K], step[..., K_ERROR])
+
+
 def displace(state: Array, error: Array, points: int) -> Array:
     """State ``(..., n)`` moved by a robocentric error ``(..., n_e)``; inverse of `difference`."""
     position = state[..., POSITION] + error[..., POSITION]
@@ -115,63 +119,49 @@ def propagate(known: StereoGeometry, state: Array, first: int, last: int) -> tup
     """States ``(run, epoch, n)`` of the epochs ``first`` to ``last``, with their sensitivities.
 
     ``last`` may come before ``first``. Sensitivities ``(run, epoch, 6, 8)`` are those of rate and
-    attitude with respect to rate, attitude and ratios at ``first``, by complex steps of eight
-    copies; those of the centre's motion are the setup's transition matrices.
+    attitude with respect to rate, attitude and ratios at ``first``; those of the centre's motion
+    are the setup's transition matrices.
     """
-    direction = 1 if last >= first else -1
-    passed = range(first, last, direction)
-    states = np.repeat(state[:, None], len(passed) + 1, axis=1)
-    turning = np.empty((*states.shape[:2], 6, _TURNING))
-    rate, q, k = _copies(state)
-    slope = inertia_ratios.slopes(k)
-    position, velocity = state[:, POSITION], state[:, VELOCITY]
-    turning[:, 0] = _sensitivity(rate, q)
-    for epoch, at in enumerate(passed, start=1):
-        leader = known.moments_of_step(at, direction)
-        step = direction * known.steps[min(at, at + direction)]
-        position, velocity = translation_step(position, velocity, leader, step)
-        rate, q = rotation_step(rate, q, slope, leader, step)
-        states[:, epoch, POSITION], states[:, epoch, VELOCITY] = position, velocity
-        states[:, epoch, RATE], states[:, epoch, Q] = rate[:, 0].real, q[:, 0].real
-        turning[:, epoch] = _sensitivity(rate, q)
+    if first == last:
+        return state[:, None], np.broadcast_to(np.eye(6, 8), (len(state), 1, 6, 8))
+    epochs = _epochs(first, last)
+    states = np.repeat(state[:, None], len(epochs), axis=1)
+    states[:, :, POSITION], states[:, :, VELOCITY] = _translation(known, state, epochs)
+    states[:, :, Q], states[:, :, RATE], turning = rotation_arc(
+        known.times[epochs], state[:, Q], state[:, RATE], state[:, K], known.leader.at(2 * epochs)
+    )
     return states, turning
 
 
 def rewind(known: StereoGeometry, state: Array, epoch: int) -> Array:
     """State ``(run, n)`` at epoch 0 of the motion that passes through ``state`` at ``epoch``."""
-    result, slope = state.copy(), inertia_ratios.slopes(state[:, K])
-    for k in range(epoch, 0, -1):
-        leader = known.moments_of_step(k, -1)
-        result[:, POSITION], result[:, VELOCITY] = translation_step(
-            result[:, POSITION], result[:, VELOCITY], leader, -known.steps[k - 1]
-        )
-        result[:, RATE], result[:, Q] = rotation_step(
-            result[:, RATE], result[:, Q], slope, leader, -known.steps[k - 1]
-        )
+    result, ends = state.copy(), np.array([epoch, 0])
+    position, velocity = _translation(known, state, _epochs(epoch, 0))
+    result[:, POSITION], result[:, VELOCITY] = position[:, -1], velocity[:, -1]
+    times = known.times[ends] - known.times[epoch]
+    q, rate = exact_rotation(
+        times, state[:, Q], state[:, RATE], state[:, K], known.leader.at(2 * ends)
+    )
+    result[:, Q], result[:, RATE] = q[:, -1], rate[:, -1]
     return result
 
 
-def _copies(state: Array) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-    """Rate, ``q_lt`` and ratios ``(run, 8, ...)``, each copy with one of the errors, imaginary."""
-    seed = 1j * _COMPLEX_STEP * np.eye(_TURNING)
-    turn = np.concatenate([np.zeros((_TURNING, 1)), 0.5 * seed[:, 3:6]], axis=-1)
-    q = state[:, None, Q] + 0j
-    rows = [
-        -(turn[:, 1:] * q[..., 1:]).sum(-1, keepdims=True),
-        q[..., :1] * turn[:, 1:] + cross(turn[:, 1:], q[..., 1:] + 0 * seed[:, :3]),
-    ]
-    q = q + np.concatenate(rows, axis=-1)
-    return state[:, None, RATE] + seed[:, :3], q, state[:, None, K] + seed[:, 6:8]
+def _epochs(first: int, last: int) -> IntArray:
+    direction = 1 if last >= first else -1
+    return np.arange(first, last + direction, direction)
 
 
-def _sensitivity(rate: NDArray[Any], q: NDArray[Any]) -> Array:
-    """``(run, 6, 8)`` of complex copies: the attitude error is ``2 vec(dq q*)``, q of unit norm."""
-    real, change = q.real, q.imag
-    turn = cross(real[..., 1:], change[..., 1:]) + (
-        real[..., :1] * change[..., 1:] - change[..., :1] * real[..., 1:]
-    )
-    both = np.concatenate([rate.imag, 2.0 * turn], axis=-1) / _COMPLEX_STEP
-    return np.swapaxes(both, -1, -2)
+def _translation(known: StereoGeometry, state: Array, epochs: IntArray) -> tuple[Array, Array]:
+    """Positions and velocities ``(run, epoch, 3)`` of epochs in a row from that of ``state`` on."""
+    positions, velocities = np.empty((2, len(state), len(epochs), 3))
+    position, velocity = state[:, POSITION], state[:, VELOCITY]
+    positions[:, 0], velocities[:, 0] = position, velocity
+    for i, (k, following) in enumerate(pairwise(epochs), start=1):
+        leader = known.moments_of_step(k, following - k)
+        step = (following - k) * known.steps[min(k, following)]
+        position, velocity = translation_step(position, velocity, leader, step)
+        positions[:, i], velocities[:, i] = position, velocity
+    return positions, velocities
 
 
 def _geometry(state: Array, points: int) -> tuple[Array, Array, Array, Array]:

@@ -55,6 +55,11 @@ class StereoGeometry(NamedTuple):
     raw_rotation: bool = False
 
     @property
+    def times(self) -> Array:
+        """Return the time of every epoch since the first, s."""
+        return np.concatenate([[0.0], np.cumsum(self.steps)])
+
+    @property
     def rows(self) -> IntArray:
         """Return the rows of `stereo.measure` that each point has."""
         groups = (self.shown.pixels, self.shown.flow, self.shown.disparity)

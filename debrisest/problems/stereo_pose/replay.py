@@ -9,6 +9,7 @@ from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import transitions
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.stereo_pose import chart
+from debrisest.problems.stereo_pose.doubts import doubts
 from debrisest.problems.stereo_pose.model import (
     POSITION,
     RATE,
@@ -53,6 +54,8 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
         ),
         sigma=sigma,
         error_names=error_names("attitude_x attitude_y attitude_z", points),
+        excess=chart.excess,
+        doubts=doubts(known),
         displace=lambda state, error: chart.displace(state, error, points),
     )
 

@@ -14,9 +14,17 @@ from debrisest.results.assessed import SIMULATED, Assessed, Result
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.schema import Table, Tables
 from debrisest.show.tables.published import CellKey, Published, published_values
-from debrisest.show.tables.verdict import Verdict, consistency, interval_meets, verdict
+from debrisest.show.tables.verdict import (
+    Verdict,
+    consistency,
+    interval_agrees,
+    interval_meets,
+    verdict,
+)
 from debrisest.vocabulary import TWO_SIDED, VOCABULARY, table_scale
 
+_DOUBTFUL_BOUND = 0.05
+"""Share of runs by which a bound is none."""
 COLUMNS = [
     *("table", "case", "estimator", "quantity", "unit", "statistic", "window"),
     *("published", "measured", "ci_low", "ci_high", "bound"),
@@ -61,12 +69,18 @@ def unexpected(
 def _disagreement(row: Mapping[Hashable, Any], entry: Published, expected: list[Verdict]) -> str:
     """Return what speaks against the expected verdicts: not the cell, nor its interval."""
     interval = row["ci_low"], row["ci_high"]
-    meets = (interval_meets(v, *interval, entry.value, entry.factor) for v in expected)
-    if row["verdict"] in expected or any(meets):
+    consistent = row["consistent_low"], row["consistent_high"]
+    if entry.value is None:
+        against = f"{consistent[0]:.4g} to {consistent[1]:.4g}"
+        meets = any(interval_agrees(v, interval, consistent) for v in expected)
+    else:
+        against = f"{entry.value:.4g}"
+        meets = any(interval_meets(v, *interval, entry.value, entry.factor) for v in expected)
+    if row["verdict"] in expected or meets:
         return ""
     return (
         f"{row['verdict']}, {row['measured']:.4g} [{row['ci_low']:.4g}, {row['ci_high']:.4g}] "
-        f"against {entry.value:.4g}"
+        f"against {against}"
     )
 
 
@@ -93,7 +107,8 @@ def _row(
     bound = None
     if estimator != SIMULATED:
         name = scenario.common.estimators[estimator].bound
-        bound = _measured(key, name, table, scenario, results)
+        if _is_bound(results.get((key.case, name))):
+            bound = _measured(key, name, table, scenario, results)
     return {
         **key._asdict(),
         "estimator": estimator,
@@ -105,11 +120,21 @@ def _row(
     }
 
 
+def _is_bound(found: Result | None) -> bool:
+    """Return whether most runs of a bound say that it is none, so that it is not shown."""
+    if found is None or not found.shows("doubt"):
+        return True
+    doubt = found.figures("doubt", "mean", "end")[found.good]
+    return bool(np.mean(doubt > 0.0) <= _DOUBTFUL_BOUND) if len(doubt) else True
+
+
 def _said(quantity: str, found: Mapping[str, Any], published: Published | None) -> Verdict:
     lost = (found["diverged"] + found["failed"]) / found["runs"]
-    if published is None:
+    if published is None or published.value is None:
         interval = found["consistent_low"], found["consistent_high"]
-        return consistency(found["measured"], *interval, lost)
+        chi_square = VOCABULARY[quantity].chi_square
+        of_costs = chi_square is not None and chi_square.of_costs
+        return consistency(found["measured"], *interval, lost, of_costs)
     said = verdict(found["measured"], published.value, published.factor, lost)
     off = quantity in TWO_SIDED and said in (Verdict.BETTER, Verdict.WORSE)
     return Verdict.NOT_REPRODUCED if off else said

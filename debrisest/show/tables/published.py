@@ -2,6 +2,7 @@
 
 Columns ``table, case, quantity, statistic, window, published, factor``, then one per estimator
 with its expected verdict, alternatives separated by ``|``. ``factor`` is the tolerance factor.
+A consistency, of which nothing is published, has neither, and is expected in words.
 """
 
 import csv
@@ -16,7 +17,7 @@ from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.window import window_of
-from debrisest.show.tables.verdict import Verdict
+from debrisest.show.tables.verdict import CONSISTENCY, Verdict
 from debrisest.vocabulary import VOCABULARY
 
 _COLUMNS = ("table", "case", "quantity", "statistic", "window", "published", "factor")
@@ -35,7 +36,7 @@ class CellKey(NamedTuple):
 class Published(NamedTuple):
     """A published value, the factor within which it counts as reproduced, what we expect."""
 
-    value: float
+    value: float | None
     factor: float
     expected: dict[str, list[Verdict]]
 
@@ -126,15 +127,27 @@ def _parse(header: list[str], row: list[str]) -> tuple[CellKey, Published]:
         raise ValueError(f"this row has {len(row)} fields, the first line {len(header)}")
     named = dict(zip(header, row))
     key = CellKey(*(named[column] for column in CellKey._fields))
-    value, factor = float(named["published"]), float(named["factor"])
-    if not (isfinite(value) and isfinite(factor) and value > 0 and factor >= 1):
-        raise ValueError("published must be positive and factor at least 1")
+    value, factor = _value(named["published"], named["factor"])
     expected = {
         name: [_verdict(word) for word in words.split("|")]
         for name, words in named.items()
         if name not in _COLUMNS and words
     }
+    wrong = [v for said in expected.values() for v in said if (value is None) != (v in CONSISTENCY)]
+    if wrong:
+        told = "with a published value" if value is not None else "without a published value"
+        raise ValueError(f"{wrong[0].value!r} is no verdict on a cell {told}")
     return key, Published(value, factor, expected)
+
+
+def _value(published: str, factor: str) -> tuple[float | None, float]:
+    """Return the value and its factor, None without either."""
+    if not published and not factor:
+        return None, 1.0
+    value, tolerance = float(published), float(factor)
+    if not (isfinite(value) and isfinite(tolerance) and value > 0 and tolerance >= 1):
+        raise ValueError("published must be positive and factor at least 1, or both left out")
+    return value, tolerance
 
 
 def _verdict(word: str) -> Verdict:

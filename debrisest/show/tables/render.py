@@ -29,6 +29,7 @@ _COLOURS = {
     "consistent": "green",
     "over-cautious": "cyan",
     "over-confident": "red",
+    "not the minimum": "red",
 }
 
 

@@ -16,9 +16,13 @@ class Verdict(StrEnum):
     CONSISTENT = "consistent"
     OVER_CONFIDENT = "over-confident"
     OVER_CAUTIOUS = "over-cautious"
+    NOT_THE_MINIMUM = "not the minimum"
 
 
-CONSISTENCY = (Verdict.CONSISTENT, Verdict.OVER_CONFIDENT, Verdict.OVER_CAUTIOUS)
+CONSISTENCY = (
+    *(Verdict.CONSISTENT, Verdict.OVER_CONFIDENT),
+    *(Verdict.OVER_CAUTIOUS, Verdict.NOT_THE_MINIMUM),
+)
 SYMBOLS = {
     Verdict.REPRODUCED: "=",
     Verdict.BETTER: "<",
@@ -31,7 +35,8 @@ LEGEND = "= reproduced, < better, > worse than published, x not reproduced (most
 LEGEND_OF_LOST = "(n) runs that diverged or failed, left out"
 LEGEND_OF_CONSISTENCY = (
     "consistent: within the 95 % chi-square interval of the runs used; over-confident: above it, "
-    "the errors are larger than the covariance says; over-cautious: below it"
+    "the errors are larger than the covariance says; over-cautious: below it; not the minimum: the "
+    "same of w, the truth fits the data better than a minimum of the cost can be worse by chance"
 )
 
 
@@ -44,8 +49,12 @@ def verdict(measured: float, published: float, factor: float, lost: float) -> Ve
     return Verdict.WORSE if measured > published * factor else Verdict.REPRODUCED
 
 
-def consistency(measured: float, low: float, high: float, lost: float) -> Verdict:
+def consistency(
+    measured: float, low: float, high: float, lost: float, of_costs: bool = False
+) -> Verdict:
     """Return the verdict on a normalised square per dimension, ``low`` to ``high`` if consistent.
+
+    Of a difference ``of_costs`` a small value is no caution: the estimate is not the minimum.
 
     Without a figure, or an interval to judge it by, there is nothing to say, nor is there of an
     estimator that lost most of its runs, of which those that are left are no sample.
@@ -54,7 +63,22 @@ def consistency(measured: float, low: float, high: float, lost: float) -> Verdic
         return Verdict.UNPUBLISHED
     if measured > high:
         return Verdict.OVER_CONFIDENT
-    return Verdict.OVER_CAUTIOUS if measured < low else Verdict.CONSISTENT
+    if measured < low:
+        return Verdict.NOT_THE_MINIMUM if of_costs else Verdict.OVER_CAUTIOUS
+    return Verdict.CONSISTENT
+
+
+def interval_agrees(
+    expected: Verdict, interval: tuple[float, float], consistent: tuple[float, float]
+) -> bool:
+    """Return whether a confidence interval reaches to where an expected word of consistency is."""
+    (low, high), (least, most) = interval, consistent
+    return {
+        Verdict.CONSISTENT: high >= least and low <= most,
+        Verdict.OVER_CONFIDENT: high > most,
+        Verdict.OVER_CAUTIOUS: low < least,
+        Verdict.NOT_THE_MINIMUM: low < least,
+    }.get(expected, False)
 
 
 def interval_meets(

@@ -51,7 +51,7 @@ def differences(function, state: np.ndarray, output_unit: float = 1.0) -> np.nda
 
 def test_the_bound_is_that_of_the_notes(two_observers) -> None:
     scene = two_observers(1)
-    problem = scene.problem()
+    problem = scene.problem(pixel_variance_px2=1.0)
     model, state, covariance, _ = scene.given(problem)
     used = np.isfinite(scene.data["true_pixel"]).all(-1) & (scene.data["section"] != 1)[..., None]
     pixels = np.where(used[..., None], scene.data["true_pixel"], np.nan)[..., None, :]
