@@ -77,6 +77,14 @@ def test_coherence_needs_a_conjugate():
     assert right < 1e-9
 
 
+def test_a_sum_of_elements_is_no_norm():
+    """Coefficients of any size have the sum zero: Eq 18 would have no solution."""
+    c = np.array([1.0 + 1j, -1.0 - 1j, 2j, -2j])
+    for size in (1.0, 1e6):
+        assert (size * c).sum() == 0.0
+        assert np.abs(size * c).sum() > size
+
+
 def _dense_lasso(n=64):
     rng = np.random.default_rng(3)
     times = np.arange(n)

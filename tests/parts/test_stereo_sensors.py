@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from scipy.spatial.transform import Rotation
 
 from debrisest.attitude import quaternion
+from debrisest.dynamics.inertia_ratios import moments
 from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
 from debrisest.parts.sensors.stereo_camera import StereoCamera
 from debrisest.parts.starts.drawn_pose import DrawnPose
@@ -33,7 +34,7 @@ def camera(**keys) -> StereoCamera:
     return StereoCamera(kind="stereo_camera", **({"baseline_m": 1.0} | given | keys))
 
 
-def guess() -> DrawnPose:
+def guess(**keys) -> DrawnPose:
     return DrawnPose(
         kind="drawn_pose",
         position_sigma_m=1.0,
@@ -42,7 +43,20 @@ def guess() -> DrawnPose:
         q_sigma=1e-3,
         inertia_ratio_sigma=0.7,
         point_sigma_m=0.2,
+        **keys,
     )
+
+
+def test_a_start_of_bodies_only_leaves_out_what_no_body_can_have(simulated: Callable) -> None:
+    """The kept draws are those of the others that obey the triangle inequality, no more."""
+    shares = {}
+    for only in (False, True):
+        data = simulated(guess(bodies_only=only), runs=400)
+        drawn = moments(data["start_inertia_ratio"])
+        shares[only] = (2 * drawn.max(axis=-1) < drawn.sum(axis=-1)).mean()
+        assert data["start_inertia_ratio"].shape == (400, 2)
+    assert shares[True] == 1.0
+    assert 0.4 < shares[False] < 0.75
 
 
 def test_both_cameras_project_the_points(simulated: Callable) -> None:

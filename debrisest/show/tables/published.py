@@ -1,7 +1,8 @@
 """Published values: a CSV beside the scenarios, with the verdict expected of each estimator.
 
 Columns ``table, case, quantity, statistic, window, published, factor``, then one per estimator
-with its expected verdict, alternatives separated by ``|``. ``factor`` is the tolerance factor.
+with its expected verdict, alternatives separated by ``|``. ``factor`` is the tolerance factor. A
+column ``derived`` may say how a value that is not printed itself was made from what is.
 """
 
 import csv
@@ -9,6 +10,8 @@ from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 from typing import NamedTuple
+
+import pandas as pd
 
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.errors import UserError
@@ -20,6 +23,7 @@ from debrisest.show.tables.verdict import Verdict
 from debrisest.vocabulary import VOCABULARY
 
 _COLUMNS = ("table", "case", "quantity", "statistic", "window", "published", "factor")
+_DERIVED = "derived"
 
 
 class CellKey(NamedTuple):
@@ -38,6 +42,8 @@ class Published(NamedTuple):
     value: float
     factor: float
     expected: dict[str, list[Verdict]]
+    derived: str = ""
+    """How it was made from what is printed; empty: it is printed so."""
 
 
 class PublishedFile(NamedTuple):
@@ -53,6 +59,16 @@ def published_values(scenario: LoadedScenario) -> dict[CellKey, Published]:
     """Return the published values that a scenario names, if it names any."""
     file = _published_file(scenario)
     return file.values if file else {}
+
+
+def derived_values(scenario: LoadedScenario, cells: pd.DataFrame) -> dict[CellKey, str]:
+    """Return how those of the cells' published values were made that are not printed so."""
+    shown = set(cells[list(CellKey._fields)].itertuples(index=False, name=None))
+    return {
+        key: value.derived
+        for key, value in published_values(scenario).items()
+        if value.derived and key in shown
+    }
 
 
 def check_published(scenario: LoadedScenario) -> None:
@@ -96,7 +112,11 @@ def load_published(path: Path) -> PublishedFile:
             problems.append(f"{path}:{line}: {error}")
     if problems:
         raise UserError(problems)
-    return PublishedFile(path, [name for name in header if name not in _COLUMNS], values, lines)
+    return PublishedFile(path, [name for name in header if _estimator(name)], values, lines)
+
+
+def _estimator(column: str) -> bool:
+    return column not in (*_COLUMNS, _DERIVED)
 
 
 def _read(path: Path) -> list[tuple[int, list[str]]]:
@@ -132,9 +152,9 @@ def _parse(header: list[str], row: list[str]) -> tuple[CellKey, Published]:
     expected = {
         name: [_verdict(word) for word in words.split("|")]
         for name, words in named.items()
-        if name not in _COLUMNS and words
+        if _estimator(name) and words
     }
-    return key, Published(value, factor, expected)
+    return key, Published(value, factor, expected, named.get(_DERIVED, ""))
 
 
 def _verdict(word: str) -> Verdict:
