@@ -68,7 +68,7 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     | {"q_sigma": [3e-3], "inertia_ratio_sigma": [0.7], "point_sigma_m": [1]}
     | {"bodies_only": [False, True]},
     "drawn_orbit": {"position_sigma_m": [100], "velocity_sigma_m_s": [100]},
-    "basis_pursuit": PURSUIT,
+    "basis_pursuit": PURSUIT | {"signs": [{}, {"keep_hypotheses": True}]},
     "direction_cosines": PURSUIT,
     "line_spectrum": {"attitude": ["triad", "wahba"], "most_lines": [30, 1]},
     "tumbling_attitude": {"integrator": ["rk4", "euler"], "measurement_noise": [1e-4]}

@@ -12,6 +12,7 @@ from debrisest.outcome import sentences
 from debrisest.parts.recoveries.attitude import AttitudeRecovery
 from debrisest.parts.recoveries.pursuit import Count, PursuitKeys
 from debrisest.recovery.basis_pursuit import Recovered, RecoveryStatus
+from debrisest.recovery.hypotheses import Hypotheses
 from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
 from debrisest.roles import Keys, NonNegative, Positive
 
@@ -29,6 +30,9 @@ class SignSearch(Keys):
     iterations: Count = 8
     splitting: Positive = Field(0.1, description="as of the recovery, for the hypotheses")
     relaxation: Annotated[float, Field(gt=0, lt=2)] = 1.6
+    keep_hypotheses: bool = Field(
+        False, description="keep what is tried for the first pieces and the next one, for figures"
+    )
 
     def scorer(self) -> Callable[[Recovered], Array]:
         """Return the penalty of a hypothesis, the lower the better."""
@@ -48,7 +52,8 @@ class BasisPursuit(PursuitKeys, AttitudeRecovery):
 
     def recover_attitude(self, matrix: Array, raw: Array, piece: IntArray, data: Data) -> Data:
         """Return the quaternion's components, recovered with the signs that were found."""
-        sign = self._signs(raw[..., 0], piece)
+        tried = self._hypotheses(piece) if self.signs.keep_hypotheses else None
+        sign = self._signs(raw[..., 0], piece, tried)
         solution = self.pursue(_signed(raw, sign, piece))
         return {
             "q_if": quaternion.normalize(np.moveaxis(solution.signal, 1, -1)),
@@ -56,9 +61,17 @@ class BasisPursuit(PursuitKeys, AttitudeRecovery):
             "status": sentences(solution.status.max(axis=-1), RecoveryStatus),
             "objective": solution.objective,
             "iterations": solution.iterations,
+            **({} if tried is None else _kept(tried)),
         }
 
-    def _signs(self, component: Array, piece: IntArray) -> Array:
+    def _hypotheses(self, piece: IntArray) -> Hypotheses:
+        """Room for the first pieces with all signs, and for one more piece of the best."""
+        search, pieces = self.signs, int(piece.max(initial=-1)) + 1
+        first = 2 ** (min(search.first_pieces, max(pieces, 1)) - 1)
+        most = first + 2 * min(search.beam, first)
+        return Hypotheses(len(piece), most, pieces, piece.shape[-1])
+
+    def _signs(self, component: Array, piece: IntArray, tried: Hypotheses | None) -> Array:
         search = self.signs
         return search_signs(
             component,
@@ -72,7 +85,16 @@ class BasisPursuit(PursuitKeys, AttitudeRecovery):
             beam=search.beam,
             first_iterations=search.first_iterations,
             iterations=search.iterations,
+            watch=tried,
         )
+
+
+def _kept(tried: Hypotheses) -> Data:
+    return {
+        "hypothesis_sign": tried.sign,
+        "hypothesis_score": tried.score,
+        "hypothesis_q0": tried.signal,
+    }
 
 
 def _signed(q: Array, sign: Array, piece: IntArray) -> Array:

@@ -7,6 +7,13 @@ QUANTITIES = {
     "q_if": Quantity(TIME_QUATERNION, "1", "recovered attitude of the feature frame"),
     "piece": Quantity(TIME, "1", "piece of uninterrupted samples the epoch belongs to"),
     "sign": Quantity(("run", "piece_number"), "1", "sign given to each piece"),
+    "hypothesis_sign": Quantity(
+        ("run", "hypothesis", "piece_number"), "1", "signs that the search tried for its pieces"
+    ),
+    "hypothesis_score": Quantity(("run", "hypothesis"), "1", "penalty of these signs"),
+    "hypothesis_q0": Quantity(
+        ("run", "hypothesis", "time_s"), "1", "first component of q_if, recovered with them"
+    ),
     "objective": Quantity(("run", "quaternion"), "1", "objective of each component's recovery"),
     "iterations": Quantity(("run", "quaternion"), "1", "iterations of each component's recovery"),
     "lines": Quantity(RUN, "1", "lines of the recovered spectrum", "1"),
