@@ -53,7 +53,9 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "drift": {"position_m": [[0, 30, 0]]},
     "closed_ellipse": {"position_m": [[0, 17.3, 5.9]], "velocity_m_s": [[9e-3, 0, -1e-3]]},
     "satellite": SATELLITE,
-    "feature_points": {"noise_m": [1e-2, 0.0, 10.0], "visibility": ["all", "back_face"]},
+    "feature_points": {"noise_m": [1e-2, 0.0, 10.0], "visibility": ["all", "back_face"]}
+    | {"missing_share": [0.0, 0.9], "outages_s": [[], [[1, 3], [2, 1e4]]]}
+    | {"attitude_noise_deg": [0.0, 1.0], "feature_error_m": [0.0, 0.1]},
     "stereo_camera": {"baseline_m": [1], "pixel_noise_px": [1e-5, 1e-2], "from_s": [1.0, 1e3]}
     | {"flow_noise_px_s": [1e-5], "disparity_noise_px": [1e-5], "outlier_share": [0.0, 1.0]},
     "angular_acceleration": {"noise_rad_s2": [1e-5], "from_s": [1.0, 1e3]},
