@@ -27,7 +27,7 @@ RIGHT = SimpleNamespace(damped="rate", solved="pinv")
 def law(reading: SimpleNamespace) -> Callable[..., Demand]:
     """Eqs 23-31 for one satellite, misprints and all, with a 5 by 3 matrix."""
 
-    def demand(craft, gains, uncertainty, _, pixel, rate, integral, scale) -> Demand:
+    def demand(craft, gains, uncertainty, _, pixel, rate, integral, scale, *_desired) -> Demand:
         p, w = pixel[0, 0], rate[0, 0]
         matrix, free = rate_matrix(p, SCALE), craft.acceleration(w)
         e, e1_dot = -np.concatenate([p, w]), -matrix @ w

@@ -61,7 +61,7 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "angular_acceleration": {"noise_rad_s2": [1e-5], "from_s": [1.0, 1e3]},
     "pinhole_camera": {"focal_px": [335], "half_size_px": [[240, 180]]},
     "pointing_control": {"inertia_kg_m2": [[[1e-3, 0, 0], [0, 1e-3, 0], [0, 0, 1e-3]]]}
-    | {"control_step_s": [0.1]},
+    | {"control_step_s": [0.1], "inertia_error": [0.0, 0.2], "desired_px": [[0, 0], [9, -9]]},
     "attitude_sensor": {"noise_deg": [1.0], "missing_share": [0.0, 1.0]},
     "attitude_knowledge": {"bias_mrad": [0.0, 1.0]},
     "detections": {"missing_share": [0.0, 0.95], "pixel_noise_px": [1.0, 0.0]},
