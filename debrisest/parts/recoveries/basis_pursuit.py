@@ -12,6 +12,7 @@ from debrisest.outcome import sentences
 from debrisest.parts.recoveries.attitude import AttitudeRecovery
 from debrisest.parts.recoveries.pursuit import Count, PursuitKeys
 from debrisest.recovery.basis_pursuit import Recovered, RecoveryStatus
+from debrisest.recovery.exact_recovery import exact_recovery_coefficient
 from debrisest.recovery.hypotheses import Hypotheses
 from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
 from debrisest.roles import Keys, NonNegative, Positive
@@ -49,13 +50,17 @@ class BasisPursuit(PursuitKeys, AttitudeRecovery):
     finished = RecoveryStatus.CONVERGED
     kind: Literal["basis_pursuit"]
     signs: SignSearch = SignSearch()
+    exact_recovery: bool = Field(
+        False, description="compute the exact recovery coefficient of the scalar part's lines"
+    )
 
     def recover_attitude(self, matrix: Array, raw: Array, piece: IntArray, data: Data) -> Data:
         """Return the quaternion's components, recovered with the signs that were found."""
         tried = self._hypotheses(piece) if self.signs.keep_hypotheses else None
         sign = self._signs(raw[..., 0], piece, tried)
         solution = self.pursue(_signed(raw, sign, piece))
-        return {
+        coefficient = self._coefficient(solution, piece) if self.exact_recovery else {}
+        return coefficient | {
             "q_if": quaternion.normalize(np.moveaxis(solution.signal, 1, -1)),
             "sign": sign,
             "status": sentences(solution.status.max(axis=-1), RecoveryStatus),
@@ -63,6 +68,15 @@ class BasisPursuit(PursuitKeys, AttitudeRecovery):
             "iterations": solution.iterations,
             **({} if tried is None else _kept(tried)),
         }
+
+    def _coefficient(self, solution: Recovered, piece: IntArray) -> Data:
+        lines = solution.coefficients[:, 0]
+        return {"exact_recovery": exact_recovery_coefficient(lines, piece >= 0, solution.length)}
+
+    def assess(self, data: Data) -> Data:
+        """Return what all recoveries tell, and the coefficient if it was asked for."""
+        told = {name: data[name] for name in ("exact_recovery",) if name in data}
+        return super().assess(data) | told
 
     def _hypotheses(self, piece: IntArray) -> Hypotheses:
         """Room for the first pieces with all signs, and for one more piece of the best."""
