@@ -10,12 +10,15 @@ from pydantic import ValidationError
 from scipy.spatial.transform import Rotation
 
 from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.draws import Draws
 from debrisest.dynamics.inertia_ratios import moments
 from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
 from debrisest.parts.sensors.stereo_camera import StereoCamera
 from debrisest.parts.starts.drawn_pose import DrawnPose
 from debrisest.parts.truth.kepler_orbit import KeplerOrbit
 from debrisest.parts.truth.random_points import RandomPoints
+from debrisest.parts.truth.rigid_points import RigidPoints
 from debrisest.parts.truth.seen_from_leader import SeenFromLeader
 from debrisest.roles import SimulationPart
 from debrisest.scenario.contracts import parts_that_do_not_fit
@@ -239,3 +242,20 @@ def test_the_first_guess_is_off_by_its_sigma(simulated: Callable) -> None:
     assert np.linalg.norm(q, axis=-1) == pytest.approx(np.ones(runs), abs=1e-12)
     angle = quaternion.angle_between(q, data["true_q_lt"][:, 0])
     assert np.sqrt((angle**2).mean() / 3) == pytest.approx(2e-3, rel=0.2)
+
+
+def test_a_body_along_its_principal_axes_gives_the_ratios_that_a_leader_needs() -> None:
+    """A target of one's own points, in the place of random ones."""
+    points = {
+        name: {"position_m": position, "normal": position}
+        for name, position in {"a": [1.0, 0, 0], "b": [0, 1.0, 0], "c": [0, 0.5, 1.0]}.items()
+    }
+    body = {"kind": "rigid_points", "points": points}
+    along = RigidPoints(**body, inertia_kg_m2=[0.83, 1.0, 1.083])
+    tilted = RigidPoints(**body, inertia_kg_m2=[[2.0, 0.1, 0], [0.1, 2.0, 0], [0, 0, 3.0]])
+    for part in (along, tilted):
+        given = part.simulate({}, Clock.regular(2, 1.0), Draws(1, "case", [0, 1]))
+        assert set(given) - {"feature"} == set(part.given)
+    ratios = along.simulate({}, Clock.regular(2, 1.0), Draws(1, "c", [0]))["true_inertia_ratio"]
+    np.testing.assert_allclose(ratios, [[np.log(0.83), np.log(1 / 1.083)]])
+    assert "true_inertia_ratio" not in tilted.given

@@ -65,7 +65,8 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "attitude_sensor": {"noise_deg": [1.0], "missing_share": [0.0, 1.0]},
     "attitude_knowledge": {"bias_mrad": [0.0, 1.0]},
     "detections": {"missing_share": [0.0, 0.95], "pixel_noise_px": [1.0, 0.0]},
-    "camera_range": {"missing_share": [0.0, 0.9, 1.0], "false_match_share": [0.0, 1.0]},
+    "camera_range": {"missing_share": [0.0, 0.9, 1.0], "false_match_share": [0.0, 1.0]}
+    | {"dark_s": [[], [[0, 1e5]]], "half_size_px": [[500, 500], [1, 1]]},
     "drawn_pose": {"position_sigma_m": [1], "velocity_sigma_m_s": [1], "rate_sigma_deg_s": [1]}
     | {"q_sigma": [3e-3], "inertia_ratio_sigma": [0.7], "point_sigma_m": [1]}
     | {"bodies_only": [False, True]},
