@@ -71,6 +71,13 @@ def kind_of(part: type[Part]) -> str:
     return str(get_args(part.model_fields["kind"].annotation)[0])
 
 
+def required_keys(kind: str) -> set[str]:
+    """Return the keys that a scenario must give to the parts of a kind; none if there is none."""
+    parts = [part for parts in CATALOG.values() for part in parts if kind_of(part) == kind]
+    keys = (part.model_fields.items() for part in parts)
+    return {name for fields in keys for name, field in fields if field.is_required()} - {"kind"}
+
+
 CATALOG: dict[str, list[type[Part]]] = {
     "target": [RigidPoints, RandomPoints, RandomBox, RandomRigidBody],
     "orbit": [KeplerOrbit, PerturbedOrbit],

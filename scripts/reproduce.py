@@ -3,7 +3,7 @@
 Usage: python scripts/reproduce.py [SEED ...]    (default: each scenario's own seed, and 2)
 
 Results go to results/seed-N. At the end stands, for each cell with a published value, whether
-its verdict is the same under all seeds.
+its verdict is the same under all seeds. The exit code is 1 where a verdict is not as expected.
 """
 
 import subprocess
@@ -17,20 +17,24 @@ CONFIGS = sorted((ROOT / "configs").glob("*.yaml"))
 KEY = ["table", "case", "estimator", "quantity", "statistic", "window"]
 
 
-def sweep(seed: str) -> Path:
-    """Run everything under one seed and return the folder of its results."""
+def sweep(seed: str) -> tuple[Path, int]:
+    """Run everything under one seed; return the folder of its results and the exit code.
+
+    The code is 1 where a run failed or a verdict is not the expected one.
+    """
     out = ROOT / "results" / f"seed-{seed}"
     chosen = [] if seed == "own" else ["--set", f"seed={seed}"]
     command = [sys.executable, "-m", "debrisest", "sweep", *map(str, CONFIGS), "--out", str(out)]
     code = subprocess.run([*command, *chosen, "--check"]).returncode
     if code not in (0, 1):
         raise SystemExit(code)
-    return out
+    return out, code
 
 
-def main(seeds: list[str]) -> None:
-    """Run all seeds, then compare their verdicts."""
-    folders = {seed: sweep(seed) for seed in seeds}
+def main(seeds: list[str]) -> int:
+    """Run all seeds, compare their verdicts, and return the largest exit code."""
+    swept = {seed: sweep(seed) for seed in seeds}
+    folders = {seed: folder for seed, (folder, _) in swept.items()}
     for config in CONFIGS:
         tables = {
             seed: pd.read_csv(folder / config.stem / "tables.csv").set_index(KEY)
@@ -43,7 +47,8 @@ def main(seeds: list[str]) -> None:
         print(f"{config.stem}: {len(published)} published cells, {len(differing)} differ by seed")
         if len(differing):
             print(differing.join(measured, rsuffix=" measured").to_string())
+    return max(code for _, code in swept.values())
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or ["own", "2"])
+    raise SystemExit(main(sys.argv[1:] or ["own", "2"]))

@@ -1,10 +1,12 @@
 """What guides say of the house is true of it: files, folders and commands."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
 import typer
+import yaml
 
 from debrisest.cli import app
 
@@ -36,3 +38,23 @@ def test_every_command_is_in_the_table() -> None:
     table = (ROOT / "README.md").read_text(encoding="utf-8")
     missing = [name for name in commands if f"| `debrisest {name}" not in table]
     assert not missing, f"README.md has no row for these commands: {missing}"
+
+
+def test_who_cites_it_cites_this_version() -> None:
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert (cited["title"], cited["version"], cited["license"]) == (
+        *(project[key] for key in ("name", "version", "license")),
+    )
+    sources = " ".join(path.read_text("utf-8") for path in (ROOT / "configs").glob("*.yaml"))
+    told = [paper["doi"] for paper in cited["references"] if "doi" in paper]
+    assert all(doi in sources for doi in told)
+
+
+def test_the_checks_sweep_every_case_of_every_scenario_and_the_workflow_reproduces_them() -> None:
+    checks = (ROOT / "scripts" / "check.sh").read_text(encoding="utf-8").replace("\\\n", " ")
+    sweeps = [line for line in checks.splitlines() if line.startswith("debrisest sweep *.yaml")]
+    assert len(sweeps) == 1 and "--case" not in sweeps[0]
+    workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "tables.yml").read_text("utf-8"))
+    steps = workflow["jobs"]["reproduce"]["steps"]
+    assert any("scripts/reproduce.py" in step.get("run", "") for step in steps)

@@ -14,7 +14,7 @@ from debrisest.results import store
 from debrisest.scenario.document import parse
 
 RUNS, EPOCHS = 3, 12
-ESTIMATORS = ["printed", "reproduction", "best", "smoother", "pixels_only"]
+ESTIMATORS = ["printed", "reproduction", "extended", "best", "smoother", "pixels_only"]
 ESTIMATORS += ["bound", "smoother_bound"]
 QUANTITIES = ["position", "velocity", "rate", "attitude", "k1", "k2"]
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.attitude import euler
+from debrisest.control.model_error import state_function
 from debrisest.control.pixel_tracking import Demand
-from debrisest.control.rigid_spacecraft import Spacecraft
+from debrisest.control.rigid_spacecraft import Spacecraft, turned
 from debrisest.control.robust_term import Gains, Reading, Uncertainty, robust_term
 
 GAINS = Gains(
@@ -35,10 +36,9 @@ def hold_attitude(
 
     ``angles`` and ``rate_b`` are as measured, ``integral (..., 3)`` that of the error so far.
     """
-    free = euler.rates(angles, craft.acceleration(rate_b))
-    drift = euler.rates_change(angles, rate_b) + free
+    drift = state_function(craft, angles, rate_b)
     error, error_rate = desired - angles, -euler.rates(angles, rate_b)
     feedback = gains.proportional * error + gains.damping * error_rate - drift
     surface = gains.proportional * integral + gains.damping * error + error_rate
     wanted = feedback + robust_term(reading, feedback, drift, surface, gains, uncertainty)
-    return Demand(euler.body_rate(angles, wanted) @ craft.inertia, error)
+    return Demand(turned(craft.inertia, euler.body_rate(angles, wanted)), error)

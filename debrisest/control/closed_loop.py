@@ -63,6 +63,8 @@ class ClosedLoop:
     turning_axes: bool = False
     """Whether the local axes' turning moves the spacecraft in them (Li et al. leave it out)."""
     frozen: Frozen = "local"
+    delivered: Array | float = 1.0
+    """Share of the demanded torques that acts, (run, satellite, 3)."""
 
     def run(self, angles0: Array) -> Pointing:
         """Return what happens from the angles ``angles0 (run, satellite, 3)`` on.
@@ -123,7 +125,8 @@ class ClosedLoop:
             )
             for history, now in zip(result[3:], (memory.stage, shown[0], torque, rate_b)):
                 history[turning, epoch, j] = now[turning]
-            angles, rate_b = self.plant.move(angles, rate_b, torque, reference, step)
+            acting = self.delivered * torque
+            angles, rate_b = self.plant.move(angles, rate_b, acting, reference, step)
         return state._replace(angles=angles, rate_b=rate_b, memory=memory)
 
 

@@ -6,10 +6,11 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray
 from debrisest.control.closed_loop import Pointing
+from debrisest.control.pixel_tracking import MIDDLE
 from debrisest.control.two_stage import TRACKING
 
 SETTLED = 5.0
-"""Largest component of a settled pixel."""
+"""Largest component by which a settled pixel is off."""
 
 
 class SectionMetrics(NamedTuple):
@@ -34,8 +35,13 @@ class SectionMetrics(NamedTuple):
     """When the section ends, (run, satellite, 3), rad."""
 
 
-def section_metrics(pointing: Pointing, number: int, step: float) -> SectionMetrics:
-    """Return the metrics (run, satellite) of section 1, 3, ...; epochs are ``step`` s apart."""
+def section_metrics(
+    pointing: Pointing, number: int, step: float, desired: Array = MIDDLE
+) -> SectionMetrics:
+    """Return the metrics (run, satellite) of section 1, 3, ...; epochs are ``step`` s apart.
+
+    ``desired (2,)`` is the pixel that the target was to be brought to.
+    """
     epochs = pointing.section == number
     has, first, count = epochs.any(1), epochs.argmax(1), epochs.sum(1)
     ended = has & ~epochs[:, -1]
@@ -44,7 +50,7 @@ def section_metrics(pointing: Pointing, number: int, step: float) -> SectionMetr
     ran = epochs[:, :, None, None] & ~np.isnan(pointing.stage)
     torque = _flat(np.where(ran[..., None], pointing.torque, np.nan))
     tracks = _flat(ran & (pointing.stage == TRACKING))
-    far = ~(np.abs(_flat(pointing.control_pixel)).max(-1) <= SETTLED)
+    far = ~(np.abs(_flat(pointing.control_pixel) - desired).max(-1) <= SETTLED)
     stage_one = fine * tracks.sum(1)
     settling = _time_of_last(tracks & far, fine) - first[:, None] * step
     settles = (stage_one > 0.0) & (settling < stage_one - 0.5 * fine)

@@ -16,7 +16,9 @@ from debrisest.control.rigid_spacecraft import Spacecraft, turned
 from debrisest.control.robust_term import Gains, Reading, Uncertainty, robust_term
 
 NEAR = 20.0
-"""Pixels from the middle, within which the conditional integral grows."""
+"""Pixels from the desired one, within which the conditional integral grows."""
+
+MIDDLE = np.zeros(2)
 
 GAINS = Gains(
     proportional=np.array([5.0, 5.0, 1.0, 1.0, 1.0]),
@@ -45,17 +47,19 @@ def track_pixel(
     rate_b: Array,
     integral: Array,
     scale: Array | float,
+    desired: Array = MIDDLE,
 ) -> Demand:
     """Torque ``(..., 3)`` for a pixel ``(..., 2)`` and a body rate ``(..., 3)``, as measured.
 
-    ``integral (..., 5)`` is that of the errors of pixel and rate so far.
+    ``integral (..., 5)`` is that of the errors of pixel and rate so far, ``desired (2,)`` where the
+    pixel is to be.
     """
     matrix = rate_matrix(pixel, scale)
     pixel_rate = turned(matrix, rate_b)
     free = craft.acceleration(rate_b)
     bent = curvature(pixel, pixel_rate, rate_b, scale) + turned(matrix, free)
     drift = np.concatenate([bent, free], axis=-1)
-    error = -np.concatenate([pixel, rate_b], axis=-1)
+    error = np.concatenate([desired - pixel, -rate_b], axis=-1)
     feedback = gains.proportional * error - drift
     feedback[..., :2] -= gains.damping * pixel_rate
     surface = gains.proportional * integral
@@ -63,8 +67,8 @@ def track_pixel(
     surface[..., 2:] += error[..., 2:]
     wanted = feedback + robust_term(reading, feedback, drift, surface, gains, uncertainty)
     if reading == "conditional":
-        error = error * np.all(np.abs(pixel) < NEAR, axis=-1, keepdims=True)
-    return Demand(_least_squares(matrix, wanted) @ craft.inertia, error)
+        error = error * np.all(np.abs(error[..., :2]) < NEAR, axis=-1, keepdims=True)
+    return Demand(turned(craft.inertia, _least_squares(matrix, wanted)), error)
 
 
 def _least_squares(matrix: Array, wanted: Array) -> Array:

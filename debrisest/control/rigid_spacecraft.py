@@ -13,17 +13,18 @@ from debrisest.attitude import euler
 
 
 class Spacecraft(NamedTuple):
-    """Inertia tensor in body axes, kg m^2, and what follows from it."""
+    """Inertia tensors ``(..., 3, 3)`` in body axes, kg m^2, and what follows from them."""
 
     inertia: Array
     inverse: Array
     gyroscopic: Array
-    """(9, 3): takes the products of the rate's components to the free angular acceleration."""
+    """(..., 9, 3): takes products of the rate's components to the free angular acceleration."""
 
     def acceleration(self, rate_b: Array) -> Array:
         """Angular acceleration ``-J^-1 (w x J w) (..., 3)``, rad/s^2, without a torque."""
         products = rate_b[..., :, None] * rate_b[..., None, :]
-        return np.asarray(products.reshape(*rate_b.shape[:-1], 9) @ self.gyroscopic)
+        rows = products.reshape(*rate_b.shape[:-1], 1, 9)
+        return np.asarray((rows @ self.gyroscopic)[..., 0, :])
 
     def move(
         self, angles: Array, rate_b: Array, torque: Array, reference_rate: Array, step: float
@@ -33,7 +34,7 @@ class Spacecraft(NamedTuple):
         ``reference_rate (..., 3)`` is that of the reference axes in these axes, rad/s. The rate is
         inertial.
         """
-        pushed = torque @ self.inverse
+        pushed = turned(self.inverse, torque)
         slopes = []
         a, w = angles, rate_b
         for reach in (0.5 * step, 0.5 * step, step, 0.0):
@@ -54,16 +55,32 @@ class Spacecraft(NamedTuple):
 
 
 def spacecraft(inertia: Array) -> Spacecraft:
-    """Return the spacecraft of an inertia tensor ``(3, 3)``, kg m^2, which must be a body's."""
+    """Return the spacecraft of inertia tensors ``(..., 3, 3)``, kg m^2, which must be bodies'."""
     moments = np.linalg.eigvalsh(inertia)
-    if not np.array_equal(inertia, inertia.T) or moments[0] <= 0.0:
+    if not np.array_equal(inertia, np.swapaxes(inertia, -1, -2)) or (moments <= 0.0).any():
         raise ValueError("the inertia tensor must be symmetric with positive principal moments")
-    if moments[2] > moments[0] + moments[1]:
+    if (moments[..., 2] > moments[..., 0] + moments[..., 1]).any():
         raise ValueError("no body has this inertia tensor: a moment exceeds the sum of the others")
     inverse = np.asarray(np.linalg.inv(inertia), dtype=np.float64)
     axes = np.eye(3)
-    gyroscopic = -np.cross(axes[:, None], inertia[None]) @ inverse
-    return Spacecraft(inertia, inverse, gyroscopic.reshape(9, 3))
+    turning = -np.cross(axes[:, None], inertia[..., None, :, :]) @ inverse[..., None, :, :]
+    return Spacecraft(inertia, inverse, turning.reshape(*inertia.shape[:-2], 9, 3))
+
+
+def over_time(craft: Spacecraft) -> Spacecraft:
+    """Return the spacecraft ``(..., satellite)`` for arrays ``(..., time, satellite, 3)``."""
+    return Spacecraft(*(matrix[..., None, :, :, :] for matrix in craft))
+
+
+def scaled(inertia: Array, factors: Array) -> Array:
+    """Inertia tensors of bodies whose extents along the axes have ``factors (..., 3)`` squared.
+
+    The second moments of mass are scaled, so that any positive factors give a body.
+    """
+    half_trace = 0.5 * np.trace(inertia, axis1=-2, axis2=-1)[..., None, None]
+    root = np.sqrt(factors)
+    second = (half_trace * np.eye(3) - inertia) * (root[..., :, None] * root[..., None, :])
+    return np.asarray(np.trace(second, axis1=-2, axis2=-1)[..., None, None] * np.eye(3) - second)
 
 
 def reference_rate_b(angles: Array, reference_rate: Array) -> Array:

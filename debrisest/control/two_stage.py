@@ -23,7 +23,7 @@ class Switch(NamedTuple):
     """When tracking has done its work, and how long the attitude is held before measuring."""
 
     pixel: float = 1.5
-    """Largest component of the measured pixel."""
+    """Largest component by which the measured pixel is off."""
     rate: float = 0.01
     """Largest component of the measured rate, rad/s."""
     calm: float = 0.5
@@ -49,6 +49,8 @@ class Controller(NamedTuple):
     """Of each component, N m, or (run, 1, 1)."""
     anti_windup: bool = True
     """Integrals stand still while the torque is at its limit."""
+    desired: Array = pixel_tracking.MIDDLE
+    """Pixel (2,) that the target is brought to."""
 
 
 class Memory(NamedTuple):
@@ -87,7 +89,8 @@ def advance(
     ``pixel (..., 2)`` is NaN where the target is out of view: the last one that was seen counts.
     """
     seen = np.where(np.isnan(pixel), memory.seen, pixel)
-    memory = _switched(controller.switch, memory._replace(seen=seen), angles, rate_b, step)
+    there = _below(seen - controller.desired, controller.switch.pixel)
+    memory = _switched(controller.switch, memory._replace(seen=seen), there, angles, rate_b, step)
     tracks = (memory.stage == TRACKING)[..., None]
     some, every = tracks.any(), tracks.all()
     track = _track(controller, memory, rate_b) if some else None
@@ -120,6 +123,7 @@ def _track(controller: Controller, memory: Memory, rate_b: Array) -> Demand:
         rate_b,
         memory.tracking_integral,
         controller.scale,
+        controller.desired,
     )
 
 
@@ -136,9 +140,11 @@ def _hold(controller: Controller, memory: Memory, angles: Array, rate_b: Array) 
     )
 
 
-def _switched(switch: Switch, memory: Memory, angles: Array, rate_b: Array, step: float) -> Memory:
-    """Memory after tracking has ended where its work is done."""
-    small = _below(memory.seen, switch.pixel) & _below(rate_b, switch.rate)
+def _switched(
+    switch: Switch, memory: Memory, there: BoolArray, angles: Array, rate_b: Array, step: float
+) -> Memory:
+    """Memory after tracking has ended where its work is done and the pixel is ``there``."""
+    small = there & _below(rate_b, switch.rate)
     calm = np.where(small, memory.calm + step, 0.0)
     tracks = memory.stage == TRACKING
     at_rest = (memory.elapsed > switch.least - 0.5 * step) & (calm > switch.calm - 0.5 * step)

@@ -20,6 +20,9 @@ from debrisest.recovery.fourier import analyse, l1_norm, multiplicity, synthesis
 Score = Callable[[Recovered], Array]
 """Penalty (...) of recovered signals; the hypothesis with the lowest one is believed."""
 
+Watch = Callable[[IntArray, Array, Recovered, Array], None]
+"""Is told the runs, and the signs, recoveries, penalties (run, hypothesis, ...) tried for them."""
+
 _DOUBLINGS = 3
 
 
@@ -46,9 +49,11 @@ def sparsity_score(
 class _Search(NamedTuple):
     """What stays the same during the search: runs (run, time) with the same `piece` (time)."""
 
+    runs: IntArray
     samples: Array
     piece: IntArray
     score: Score
+    watch: Watch | None
     ratio: float
     penalty: float
     splitting: float
@@ -79,6 +84,7 @@ def search_signs(
     beam: int = 2,
     first_iterations: int = 60,
     iterations: int = 8,
+    watch: Watch | None = None,
 ) -> Array:
     """Sign (..., piece) of every piece of `samples` (..., time), +1 for the first.
 
@@ -89,7 +95,8 @@ def search_signs(
 
     `ratio` is that of atoms to samples (1 as printed, and then the search fails; see
     `dictionary_length`); during the search it is between `ratio` and twice that, so that the
-    length seldom changes. The remaining parameters are those of `basis_pursuit`.
+    length seldom changes. The remaining parameters are those of `basis_pursuit`. ``watch`` is told
+    every step of the search.
     """
     if first < 1 or beam < 1:
         raise ValueError("the pieces tried first and the width of the beam must be at least 1")
@@ -98,7 +105,8 @@ def search_signs(
     sign = np.full((len(runs), int(piece.max(initial=-1)) + 1), np.nan)
     for index, mask in enumerate(masks):
         same = np.flatnonzero(group.reshape(-1) == index)
-        search = _Search(runs[same], mask, score, ratio, penalty, splitting, relaxation, beam)
+        keys = (ratio, penalty, splitting, relaxation, beam)
+        search = _Search(same, runs[same], mask, score, watch, *keys)
         found = _search(search, first, first_iterations, iterations)
         sign[same, : found.shape[-1]] = found
     return sign.reshape(*samples.shape[:-1], sign.shape[-1])
@@ -145,7 +153,10 @@ def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) 
         tolerance=0.0,
         start=None if parents is None else _start(parents, length, window),
     )
-    order = np.argsort(search.score(recovered), axis=-1, kind="stable")[:, : search.beam, None]
+    score = search.score(recovered)
+    if search.watch is not None:
+        search.watch(search.runs, sign, recovered, score)
+    order = np.argsort(score, axis=-1, kind="stable")[:, : search.beam, None]
     kept = np.take_along_axis(recovered.coefficients, order, axis=1)
     return _Beam(np.take_along_axis(sign, order, axis=1), kept, length)
 

@@ -5,6 +5,7 @@ Stricter than YAML 1.1: duplicate keys are problems, ``1e-6`` is a number, only 
 """
 
 import re
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -104,13 +105,18 @@ def parse(text: str, source: str) -> tuple[Document, list[Problem]]:
     return Document(value, places), reader.problems
 
 
-def merge(base: Document, over: Document) -> Document:
+Required = Callable[[str], Collection[str]]
+"""The keys that a kind cannot do without."""
+
+
+def merge(base: Document, over: Document, required: Required = lambda kind: ()) -> Document:
     """Return ``base`` with ``over`` laid on it: mappings merge key by key, the rest is replaced.
 
-    A mapping of another ``kind`` replaces the base's, since the keys of a kind are its own.
+    A mapping of another ``kind`` replaces the base's, since the keys of a kind are its own, but for
+    those that are ``required`` and not given again.
     """
     places = {path: place for path, place in over.places.items() if path}
-    return Document(merge_values(base.value, over.value), base.places | places)
+    return Document(merge_values(base.value, over.value, required), base.places | places)
 
 
 def sub_document(document: Document, path: KeyPath) -> Document:
@@ -123,13 +129,15 @@ def sub_document(document: Document, path: KeyPath) -> Document:
     return Document(value if isinstance(value, dict) else {}, places)
 
 
-def merge_values(base: Any, over: Any) -> Any:
+def merge_values(base: Any, over: Any, required: Required = lambda kind: ()) -> Any:
     """Return plain data with others laid on them, as ``merge`` does."""
     if not (isinstance(base, dict) and isinstance(over, dict)):
         return over
     if "kind" in over and over["kind"] != base.get("kind", over["kind"]):
-        return over
-    return base | {key: merge_values(base.get(key), value) for key, value in over.items()}
+        return {key: base[key] for key in required(str(over["kind"])) if key in base} | over
+    return base | {
+        key: merge_values(base.get(key), value, required) for key, value in over.items()
+    }
 
 
 @dataclass

@@ -7,6 +7,7 @@ from functools import reduce
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from debrisest.catalog import required_keys
 from debrisest.errors import UserError
 from debrisest.plugins.load import Plugin, load_plugins
 from debrisest.scenario.case import Case
@@ -74,7 +75,7 @@ def load_scenario(
     layers_of = _layers_of_cases(document, listed or CasesAndGrid())
     problems += _placed(document, _case_name_problems(layers_of, listed or CasesAndGrid()))
     for name, layers in layers_of.items():
-        complete, wrong = told_by_data(reduce(merge, [*layers, *laid_on]), path.parent)
+        complete, wrong = told_by_data(reduce(_laid_on, [*layers, *laid_on]), path.parent)
         scenario, found = validated(complete, scenario_model(), path.parent)
         problems += wrong + found
         if scenario is not None and not wrong:
@@ -86,6 +87,10 @@ def load_scenario(
     if problems:
         raise UserError(dict.fromkeys(map(str, problems)))
     return LoadedScenario(path, cases)
+
+
+def _laid_on(base: Document, over: Document) -> Document:
+    return merge(base, over, required_keys)
 
 
 def _read(path: Path) -> str:

@@ -46,3 +46,26 @@ def test_batches_broadcast() -> None:
     for one, both in zip(positions, camera_axes(positions)):
         assert np.array_equal(camera_axes(one), both)
     assert camera_rate(positions, 0.01 * positions[::-1], N).shape == (2, 3)
+
+
+def _first(angle: float) -> Array:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]])
+
+
+def _third(angle: float) -> Array:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def test_a_3_1_sequence_never_points_its_first_axis_out_of_the_orbit() -> None:
+    """Only the second or third can be the optical axis."""
+    angles = np.random.default_rng(0).uniform(-np.pi, np.pi, (50, 2))
+    for alpha, beta in angles:
+        assert abs((_first(beta) @ _third(alpha))[0, 2]) < 1e-15
+    position = np.array([5.0, 17.3205081, 5.90884652])
+    azimuth = np.arctan2(position[1], position[0])
+    elevation = np.arcsin(position[2] / np.linalg.norm(position))
+    to_camera = _first(-np.pi / 2 - elevation) @ _third(azimuth + np.pi / 2)
+    assert np.allclose(to_camera[2], -position / np.linalg.norm(position))
+    assert np.allclose(to_camera, camera_axes(position).T)

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from debrisest.clock import Clock
-from debrisest.dynamics.inertia_ratios import ratios
+from debrisest.dynamics.inertia_ratios import moments, ratios
 from debrisest.dynamics.kepler import MU_EARTH
 from debrisest.dynamics.relative_orbit import leader_orbit, relative_acceleration
 from debrisest.dynamics.relative_rotation import rotate
@@ -240,6 +240,15 @@ def test_the_attitude_of_table_4_is_that_of_one_second_later():
     late = np.percentile(np.linalg.norm(turn + error, axis=1), [50, 70, 90])
     np.testing.assert_allclose(late, [1.8, 2.0, 2.2], rtol=0.03)
     assert np.percentile(np.linalg.norm(error, axis=1), 90) < 1.0
+
+
+@pytest.mark.parametrize(("variance", "share"), [(1.0, 0.593), (0.5, 0.409)])
+def test_most_drawn_ratios_are_no_bodys(variance, share):
+    """Sec. 4 calls k1 and k2 unconstrained; a moment never exceeds the sum of the two others."""
+    errors = variance**0.5 * np.random.default_rng(0).normal(size=(100000, 2))
+    drawn = moments(ratios(INERTIA) + errors)
+    impossible = 2 * drawn.max(axis=-1) > drawn.sum(axis=-1)
+    assert impossible.mean() == pytest.approx(share, abs=0.006)
 
 
 def test_the_leaders_inertia_of_equation_47_is_a_physical_one():

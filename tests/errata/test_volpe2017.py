@@ -7,7 +7,6 @@ from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.dynamics.gravity_gradient import tumble
 from debrisest.dynamics.kepler import MU_EARTH
-from debrisest.dynamics.pointing import camera_axes
 from debrisest.target.surface import box_faces, depth_along
 
 RADIUS = 7e6
@@ -45,29 +44,6 @@ def test_gravity_gradient_tells_ratios_even_of_a_target_at_rest() -> None:
     end = 2 * np.pi / N
     changed = quaternion.angle_between(_turned(nominal, at_rest, end), _turned(other, at_rest, end))
     assert 1000 * float(changed) / 20.0 > 0.3
-
-
-def _first(angle: float) -> Array:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]])
-
-
-def _third(angle: float) -> Array:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def test_a_3_1_sequence_never_points_its_first_axis_out_of_the_orbit() -> None:
-    """Section 3.2 lists the optical axis first; only the second or third can be one."""
-    angles = np.random.default_rng(0).uniform(-np.pi, np.pi, (50, 2))
-    for alpha, beta in angles:
-        assert abs((_first(beta) @ _third(alpha))[0, 2]) < 1e-15
-    position = np.array([5.0, 17.3205081, 5.90884652])
-    azimuth = np.arctan2(position[1], position[0])
-    elevation = np.arcsin(position[2] / np.linalg.norm(position))
-    to_camera = _first(-np.pi / 2 - elevation) @ _third(azimuth + np.pi / 2)
-    assert np.allclose(to_camera[2], -position / np.linalg.norm(position))
-    assert np.allclose(to_camera, camera_axes(position).T)
 
 
 def test_a_range_finder_shows_the_surface_not_the_centre_of_mass() -> None:

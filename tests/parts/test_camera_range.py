@@ -226,3 +226,21 @@ def test_a_range_from_inside_the_target_is_refused() -> None:
     camera = _camera(range_to="surface", half_sides_m=[30.0, 30.0, 30.0])
     with pytest.raises(ValueError, match="range is zero or below"):
         camera.simulate(data, CLOCK, draws)
+
+
+def test_in_the_shadow_the_camera_shows_nothing_and_the_range_goes_on() -> None:
+    data = _seen({"dark_s": [[100, 150], [140, 200]]})
+    seen = np.isfinite(data["measured_pixel"]).all(axis=(2, 3, 4))
+    lit = (CLOCK.times < 100) | (CLOCK.times >= 200)
+    assert (seen == lit).all()
+    assert np.isfinite(data["measured_range"]).all()
+
+
+def test_points_outside_the_image_are_not_seen() -> None:
+    free, limited = _seen({}), _seen({"half_size_px": [60, 40]})
+    inside = np.all(np.abs(free["measured_pixel"]) <= [60.5, 40.5], axis=-1)
+    seen = np.isfinite(limited["measured_pixel"]).all(axis=-1)
+    assert 0.05 < seen.mean() < 0.95
+    assert not (seen & ~inside).any()
+    well_inside = np.all(np.abs(free["measured_pixel"]) <= [59, 39], axis=-1)
+    assert not (well_inside & ~seen).any()

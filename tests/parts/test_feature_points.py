@@ -11,13 +11,13 @@ RUNS, EPOCHS = 3, 400
 POINTS = 10.0 * np.random.default_rng(1).normal(size=(6, 3))
 
 
-def measured(**keys):
+def measured(position=(0.0, 0.0, 0.0), **keys):
     truth = {
         "feature": np.array([f"p{i}" for i in range(6)]),
         "true_point_b": np.tile(POINTS, (RUNS, 1, 1)),
         "true_normal_b": np.ones((RUNS, 6, 3)),
         "true_q_ib": np.tile([1.0, 0.0, 0.0, 0.0], (RUNS, EPOCHS, 1)),
-        "true_position": np.zeros((RUNS, EPOCHS, 3)),
+        "true_position": np.tile(np.array(position), (RUNS, EPOCHS, 1)),
     }
     part = FeaturePoints(**{"kind": "feature_points", "noise_m": 1e-3, "visibility": "all"} | keys)
     draws = Draws(1, "case", list(range(RUNS)))
@@ -58,3 +58,42 @@ def test_noise_and_the_last_epoch_are_drawn_for_each_run() -> None:
     assert np.all((told >= 0.01) & (told <= 0.1)) and len(set(told)) == RUNS
     shown = np.nanstd(data["measured_point"] - POINTS, axis=(1, 2, 3))
     assert np.all(np.abs(shown / told - 1.0) < 5.0 / np.sqrt(2 * 100 * 18))
+
+
+def test_outages_and_drop_outs_add_up() -> None:
+    keys = {"outages_s": [[10, 20], [15, 30.5]], "missing_share": 0.25}
+    seen = np.isfinite(measured(**keys)["measured_point"][..., 0])
+    out = (np.arange(EPOCHS) >= 10) & (np.arange(EPOCHS) < 30.5)
+    assert not seen[:, out].any()
+    left = seen[:, ~out]
+    assert abs(left.mean() - 0.75) < 5 * np.sqrt(0.25 * 0.75 / left.size)
+    assert np.all(np.isfinite(measured()["measured_point"]))
+
+
+def test_depth_is_noisier_than_what_lies_across() -> None:
+    """Along (3, 0, 4) / 5 three times the noise, across it as it is given; told is the RMS."""
+    position = np.array([30.0, 0.0, 40.0])
+    data = measured(position, depth_noise_factor=3.0, noise_m=0.1)
+    off = data["measured_point"] - POINTS - position
+    axes = np.array([[0.6, 0.0, 0.8], [0.8, 0.0, -0.6], [0.0, 1.0, 0.0]])
+    spread = np.sqrt(np.mean((off @ axes.T) ** 2, axis=(0, 1, 2)))
+    np.testing.assert_allclose(spread, [0.3, 0.1, 0.1], rtol=5 / np.sqrt(2 * off[..., 0].size))
+    np.testing.assert_allclose(data["point_noise"], np.sqrt((off**2).mean()), rtol=0.05)
+
+
+def test_an_error_of_the_chasers_attitude_turns_all_points_of_an_epoch_about_it() -> None:
+    position = np.array([0.0, 30.0, 0.0])
+    points = measured(position, attitude_noise_deg=0.5, noise_m=1e-9)["measured_point"]
+    right = POINTS + position
+    distances = np.broadcast_to(np.linalg.norm(right, axis=-1), points.shape[:-1])
+    np.testing.assert_allclose(np.linalg.norm(points, axis=-1), distances)
+    off = (points - right)[..., [0, 2]].mean(axis=2) / right[:, 1].mean()
+    np.testing.assert_allclose(np.degrees(off.std()), 0.5, rtol=0.1)
+    assert np.abs(np.corrcoef(off[0, 1:, 0], off[0, :-1, 0])[0, 1]) < 0.25
+
+
+def test_features_are_not_where_they_are_known_to_be() -> None:
+    points = measured(feature_error_m=0.2, noise_m=1e-6)["measured_point"]
+    off = points - POINTS
+    assert np.abs(np.ptp(off, axis=1)).max() < 1e-4
+    assert off[:, 0].std() == pytest.approx(0.2, rel=5 / np.sqrt(2 * off[:, 0].size))

@@ -23,6 +23,7 @@ def scene(duration: int, runs: int) -> dict[str, np.ndarray]:
     names = ("orbit_position", "orbit_velocity", "observer_position", "observer_velocity")
     data = {name: np.stack([x] * runs) for name, x in zip(names, (*debris, *own))}
     image = {"focal_px": np.full(runs, 335.0), "image_half_size": [[240.0, 180.0]] * runs}
+    data["observer"] = np.array(["s1", "s2"])
     return {"time_s": times, **data, **{name: np.array(x) for name, x in image.items()}}
 
 
@@ -135,3 +136,35 @@ def test_what_does_not_fit_the_camera_or_the_clock_is_refused(wrong, said) -> No
 def test_a_step_has_a_whole_number_of_control_steps(control_step, count) -> None:
     result = simulate(scene(3, 1), [0], control_step_s=control_step, store_every=1)
     assert len(result["control_time_s"]) == 3 * count
+
+
+def test_a_plant_that_is_not_the_model_is_drawn_for_each_run(alike) -> None:
+    keys = {"inertia_error": 0.1, "torque_error": 0.1}
+    drawn, alone = simulate(scene(50, 3), [0, 1, 2], **keys), simulate(scene(50, 1), [2], **keys)
+    np.testing.assert_array_equal(drawn["torque"][2], alone["torque"][0])
+    assert len(set(drawn["peak_torque"])) == 3 or len(set(drawn["total_variation"])) == 3
+    assert np.all(drawn["gain_mismatch"] > 0.05)
+    assert np.all(alike["gain_mismatch"] < 0.05)
+    np.testing.assert_allclose(alike["drift_mismatch"], 0.1, atol=0.01)
+
+
+def test_a_satellite_can_have_its_own_inertia_and_angles(alike) -> None:
+    own = {"s2": {"inertia_kg_m2": (2 * np.array(INERTIA)).tolist(), "angles_deg": [0, 2, 0]}}
+    unlike = simulate(scene(50, 1), [0], satellites=own)
+    np.testing.assert_allclose(np.degrees(unlike["true_euler"][0, 0]), [[0, 0, 0], [0, 2, 0]])
+    assert unlike["first_section"][0] != alike["first_section"][0]
+    first = [np.nanmax(np.abs(x["torque"][0]), axis=(0, 2)) for x in (unlike, alike)]
+    assert first[0][1] > 1.5 * first[1][1]
+
+
+def test_a_satellite_that_is_none_is_told() -> None:
+    with pytest.raises(ValueError, match="no observer is called s3; there are s1, s2"):
+        simulate(scene(50, 1), [0], satellites={"s3": {"angles_deg": [0.0, 1.0, 0.0]}})
+
+
+def test_the_debris_is_brought_to_the_pixel_that_is_desired() -> None:
+    data = simulate(scene(60, 1), [0], desired_px=[50.0, -30.0])
+    pixel = data["control_pixel"][0]
+    near = np.abs(pixel - [50.0, -30.0]).max(axis=-1) < 5.0
+    assert np.all(near.any(axis=0))
+    assert np.isfinite(data["settling_time"]).all()

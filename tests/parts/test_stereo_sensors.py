@@ -10,11 +10,15 @@ from pydantic import ValidationError
 from scipy.spatial.transform import Rotation
 
 from debrisest.attitude import quaternion
+from debrisest.clock import Clock
+from debrisest.draws import Draws
+from debrisest.dynamics.inertia_ratios import moments
 from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
 from debrisest.parts.sensors.stereo_camera import StereoCamera
 from debrisest.parts.starts.drawn_pose import DrawnPose
 from debrisest.parts.truth.kepler_orbit import KeplerOrbit
 from debrisest.parts.truth.random_points import RandomPoints
+from debrisest.parts.truth.rigid_points import RigidPoints
 from debrisest.parts.truth.seen_from_leader import SeenFromLeader
 from debrisest.roles import SimulationPart
 from debrisest.scenario.contracts import parts_that_do_not_fit
@@ -33,7 +37,7 @@ def camera(**keys) -> StereoCamera:
     return StereoCamera(kind="stereo_camera", **({"baseline_m": 1.0} | given | keys))
 
 
-def guess() -> DrawnPose:
+def guess(**keys) -> DrawnPose:
     return DrawnPose(
         kind="drawn_pose",
         position_sigma_m=1.0,
@@ -42,7 +46,20 @@ def guess() -> DrawnPose:
         q_sigma=1e-3,
         inertia_ratio_sigma=0.7,
         point_sigma_m=0.2,
+        **keys,
     )
+
+
+def test_a_start_of_bodies_only_leaves_out_what_no_body_can_have(simulated: Callable) -> None:
+    """The kept draws are those of the others that obey the triangle inequality, no more."""
+    shares = {}
+    for only in (False, True):
+        data = simulated(guess(bodies_only=only), runs=400)
+        drawn = moments(data["start_inertia_ratio"])
+        shares[only] = (2 * drawn.max(axis=-1) < drawn.sum(axis=-1)).mean()
+        assert data["start_inertia_ratio"].shape == (400, 2)
+    assert shares[True] == 1.0
+    assert 0.4 < shares[False] < 0.75
 
 
 def test_both_cameras_project_the_points(simulated: Callable) -> None:
@@ -225,3 +242,20 @@ def test_the_first_guess_is_off_by_its_sigma(simulated: Callable) -> None:
     assert np.linalg.norm(q, axis=-1) == pytest.approx(np.ones(runs), abs=1e-12)
     angle = quaternion.angle_between(q, data["true_q_lt"][:, 0])
     assert np.sqrt((angle**2).mean() / 3) == pytest.approx(2e-3, rel=0.2)
+
+
+def test_a_body_along_its_principal_axes_gives_the_ratios_that_a_leader_needs() -> None:
+    """A target of one's own points, in the place of random ones."""
+    points = {
+        name: {"position_m": position, "normal": position}
+        for name, position in {"a": [1.0, 0, 0], "b": [0, 1.0, 0], "c": [0, 0.5, 1.0]}.items()
+    }
+    body = {"kind": "rigid_points", "points": points}
+    along = RigidPoints(**body, inertia_kg_m2=[0.83, 1.0, 1.083])
+    tilted = RigidPoints(**body, inertia_kg_m2=[[2.0, 0.1, 0], [0.1, 2.0, 0], [0, 0, 3.0]])
+    for part in (along, tilted):
+        given = part.simulate({}, Clock.regular(2, 1.0), Draws(1, "case", [0, 1]))
+        assert set(given) - {"feature"} == set(part.given)
+    ratios = along.simulate({}, Clock.regular(2, 1.0), Draws(1, "c", [0]))["true_inertia_ratio"]
+    np.testing.assert_allclose(ratios, [[np.log(0.83), np.log(1 / 1.083)]])
+    assert "true_inertia_ratio" not in tilted.given

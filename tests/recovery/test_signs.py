@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from debrisest.recovery.basis_pursuit import Recovered
+from debrisest.recovery.hypotheses import Hypotheses
 from debrisest.recovery.pieces import pieces
 from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
 
@@ -139,3 +140,30 @@ def test_sparsity_score_is_eq_28_on_the_full_spectrum():
 def test_empty_searches_are_refused(wrong):
     with pytest.raises(ValueError, match="at least 1"):
         search_signs(np.ones(20), np.zeros(20, int), **wrong)
+
+
+def test_what_was_tried_is_kept_in_the_order_of_the_search() -> None:
+    """Sixteen signs of five pieces, then two parents with a sixth one of either sign."""
+    rng = np.random.default_rng(9)
+    observed, short = mask_with_gaps(rng, 7), mask_with_gaps(rng, 3)
+    flips = rng.choice([-1.0, 1.0], (2, 7))
+    signal = smooth_signal(rng)
+    rows = [flipped(signal, observed, flips), flipped(signal, short, flips[:1, :3])]
+    runs, piece = np.concatenate(rows), pieces(np.stack([observed, observed, short]))
+    tried = Hypotheses(3, 20, 7, TIME)
+    found = search_signs(runs, piece, watch=tried)
+    assert (found == search_signs(runs, piece))[:2].all()
+    told = np.isfinite(tried.sign).sum(axis=-1)
+    assert (told[:2] == [5] * 16 + [6] * 4).all()
+    assert (told[2] == [3] * 4 + [0] * 16).all()
+    for run in range(2):
+        order = np.argsort(tried.score[run, :16])[:2]
+        parents = tried.sign[run, order, :5]
+        np.testing.assert_array_equal(tried.sign[run, 16:, :5], np.tile(parents, (2, 1)))
+        np.testing.assert_array_equal(tried.sign[run, 16:, 5], [1, 1, -1, -1])
+        best = 16 + int(np.argmin(tried.score[run, 16:]))
+        np.testing.assert_array_equal(tried.sign[run, best, :6], found[run, :6])
+        end = np.flatnonzero(piece[run] == 5)[-1] + 1
+        right = signal[:end] * flips[run, 0]
+        assert np.abs(tried.signal[run, best, :end] - right)[observed[:end]].max() < 0.3
+        assert np.isnan(tried.signal[run, best, end:]).all()

@@ -54,21 +54,25 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "drift": {"position_m": [[0, 30, 0]]},
     "closed_ellipse": {"position_m": [[0, 17.3, 5.9]], "velocity_m_s": [[9e-3, 0, -1e-3]]},
     "satellite": SATELLITE,
-    "feature_points": {"noise_m": [1e-2, 0.0, 10.0], "visibility": ["all", "back_face"]},
+    "feature_points": {"noise_m": [1e-2, 0.0, 10.0], "visibility": ["all", "back_face"]}
+    | {"missing_share": [0.0, 0.9], "outages_s": [[], [[1, 3], [2, 1e4]]]}
+    | {"attitude_noise_deg": [0.0, 1.0], "feature_error_m": [0.0, 0.1]},
     "stereo_camera": {"baseline_m": [1], "pixel_noise_px": [1e-5, 1e-2], "from_s": [1.0, 1e3]}
     | {"flow_noise_px_s": [1e-5], "disparity_noise_px": [1e-5], "outlier_share": [0.0, 1.0]},
     "angular_acceleration": {"noise_rad_s2": [1e-5], "from_s": [1.0, 1e3]},
     "pinhole_camera": {"focal_px": [335], "half_size_px": [[240, 180]]},
     "pointing_control": {"inertia_kg_m2": [[[1e-3, 0, 0], [0, 1e-3, 0], [0, 0, 1e-3]]]}
-    | {"control_step_s": [0.1]},
+    | {"control_step_s": [0.1], "inertia_error": [0.0, 0.2], "desired_px": [[0, 0], [9, -9]]},
     "attitude_sensor": {"noise_deg": [1.0], "missing_share": [0.0, 1.0]},
     "attitude_knowledge": {"bias_mrad": [0.0, 1.0]},
     "detections": {"missing_share": [0.0, 0.95], "pixel_noise_px": [1.0, 0.0]},
-    "camera_range": {"missing_share": [0.0, 0.9, 1.0], "false_match_share": [0.0, 1.0]},
+    "camera_range": {"missing_share": [0.0, 0.9, 1.0], "false_match_share": [0.0, 1.0]}
+    | {"dark_s": [[], [[0, 1e5]]], "half_size_px": [[500, 500], [1, 1]]},
     "drawn_pose": {"position_sigma_m": [1], "velocity_sigma_m_s": [1], "rate_sigma_deg_s": [1]}
-    | {"q_sigma": [3e-3], "inertia_ratio_sigma": [0.7], "point_sigma_m": [1]},
+    | {"q_sigma": [3e-3], "inertia_ratio_sigma": [0.7], "point_sigma_m": [1]}
+    | {"bodies_only": [False, True]},
     "drawn_orbit": {"position_sigma_m": [100], "velocity_sigma_m_s": [100]},
-    "basis_pursuit": PURSUIT,
+    "basis_pursuit": PURSUIT | {"signs": [{}, {"keep_hypotheses": True}]},
     "direction_cosines": PURSUIT,
     "line_spectrum": {"attitude": ["triad", "wahba"], "most_lines": [30, 1]},
     "tumbling_attitude": {"integrator": ["rk4", "euler"], "measurement_noise": [1e-4]}

@@ -493,6 +493,22 @@ def test_another_kind_replaces_the_whole_mapping(small: Path) -> None:
     assert (hold.kind, hold.position_m) == ("hold", [0, 9, 0])
 
 
+def test_another_kind_keeps_what_it_requires_too_and_no_more(small: Path) -> None:
+    edited(small, "{kind: hold, position_m: [0, 30, 0]}", FREE)
+    cases = load_scenario(small, ["observers.chaser.kind=hold"]).cases
+    assert cases["slow"].scenario.observers["chaser"].model_dump(exclude={"kind"}) == {
+        "position_m": [0, 20, 0]
+    }
+    rates = [load_scenario(small, over).cases["fast"].scenario.motion.rate_deg_s for over in SPUN]
+    assert rates == [[7.2, 5.5, -1.6], [7.2, 5.5, -1.6], [1, 2, 3]]
+
+
+FREE = "{kind: drift, position_m: [0, 20, 0], velocity_m_s: [1, 0, 0]}"
+SPUN: list[list[str]] = [
+    [],
+    ["motion.kind=gravity_gradient"],
+    ["motion={kind: gravity_gradient, rate_deg_s: [1, 2, 3]}"],
+]
 GRID = "grid: {sensors.points.noise_m: [0.01, 0.02], step_s: [1, 2, 3]}\n"
 
 

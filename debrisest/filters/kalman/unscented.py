@@ -57,9 +57,8 @@ def unscented(
     updates; `measurements` (run, time, m), NaN = not observed; `keep` lists the epochs whose full
     covariance is wanted. Differences from the printed equations:
 
-    * Eq 32: the factor of sqrt(P) is sqrt(alpha^2 (n_e + kappa)).
-    * Eqs 34-35: mean and covariance are those of the predicted points, the covariance about
-      the mean.
+    * Eq 32: its alpha is alpha^2 (n_e + kappa) here.
+    * Eqs 34-35: mean and covariance are those of the predicted points, X- instead of X^.
     * Eq 36: new points are drawn from the predicted covariance, Q included, so that on a linear
       model the filter is the Kalman filter whatever Q. Without `redraw` the predicted points are
       measured as they are, as printed, and S and C lack Q.

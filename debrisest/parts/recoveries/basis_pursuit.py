@@ -12,6 +12,8 @@ from debrisest.outcome import sentences
 from debrisest.parts.recoveries.attitude import AttitudeRecovery
 from debrisest.parts.recoveries.pursuit import Count, PursuitKeys
 from debrisest.recovery.basis_pursuit import Recovered, RecoveryStatus
+from debrisest.recovery.exact_recovery import exact_recovery_coefficient
+from debrisest.recovery.hypotheses import Hypotheses
 from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
 from debrisest.roles import Keys, NonNegative, Positive
 
@@ -29,6 +31,9 @@ class SignSearch(Keys):
     iterations: Count = 8
     splitting: Positive = Field(0.1, description="as of the recovery, for the hypotheses")
     relaxation: Annotated[float, Field(gt=0, lt=2)] = 1.6
+    keep_hypotheses: bool = Field(
+        False, description="keep what is tried for the first pieces and the next one, for figures"
+    )
 
     def scorer(self) -> Callable[[Recovered], Array]:
         """Return the penalty of a hypothesis, the lower the better."""
@@ -45,20 +50,42 @@ class BasisPursuit(PursuitKeys, AttitudeRecovery):
     finished = RecoveryStatus.CONVERGED
     kind: Literal["basis_pursuit"]
     signs: SignSearch = SignSearch()
+    exact_recovery: bool = Field(
+        False, description="compute the exact recovery coefficient of the scalar part's lines"
+    )
 
     def recover_attitude(self, matrix: Array, raw: Array, piece: IntArray, data: Data) -> Data:
         """Return the quaternion's components, recovered with the signs that were found."""
-        sign = self._signs(raw[..., 0], piece)
+        tried = self._hypotheses(piece) if self.signs.keep_hypotheses else None
+        sign = self._signs(raw[..., 0], piece, tried)
         solution = self.pursue(_signed(raw, sign, piece))
-        return {
+        coefficient = self._coefficient(solution, piece) if self.exact_recovery else {}
+        return coefficient | {
             "q_if": quaternion.normalize(np.moveaxis(solution.signal, 1, -1)),
             "sign": sign,
             "status": sentences(solution.status.max(axis=-1), RecoveryStatus),
             "objective": solution.objective,
             "iterations": solution.iterations,
+            **({} if tried is None else _kept(tried)),
         }
 
-    def _signs(self, component: Array, piece: IntArray) -> Array:
+    def _coefficient(self, solution: Recovered, piece: IntArray) -> Data:
+        lines = solution.coefficients[:, 0]
+        return {"exact_recovery": exact_recovery_coefficient(lines, piece >= 0, solution.length)}
+
+    def assess(self, data: Data) -> Data:
+        """Return what all recoveries tell, and the coefficient if it was asked for."""
+        told = {name: data[name] for name in ("exact_recovery",) if name in data}
+        return super().assess(data) | told
+
+    def _hypotheses(self, piece: IntArray) -> Hypotheses:
+        """Room for the first pieces with all signs, and for one more piece of the best."""
+        search, pieces = self.signs, int(piece.max(initial=-1)) + 1
+        first = 2 ** (min(search.first_pieces, max(pieces, 1)) - 1)
+        most = first + 2 * min(search.beam, first)
+        return Hypotheses(len(piece), most, pieces, piece.shape[-1])
+
+    def _signs(self, component: Array, piece: IntArray, tried: Hypotheses | None) -> Array:
         search = self.signs
         return search_signs(
             component,
@@ -72,7 +99,16 @@ class BasisPursuit(PursuitKeys, AttitudeRecovery):
             beam=search.beam,
             first_iterations=search.first_iterations,
             iterations=search.iterations,
+            watch=tried,
         )
+
+
+def _kept(tried: Hypotheses) -> Data:
+    return {
+        "hypothesis_sign": tried.sign,
+        "hypothesis_score": tried.score,
+        "hypothesis_q0": tried.signal,
+    }
 
 
 def _signed(q: Array, sign: Array, piece: IntArray) -> Array:

@@ -7,8 +7,18 @@ QUANTITIES = {
     "q_if": Quantity(TIME_QUATERNION, "1", "recovered attitude of the feature frame"),
     "piece": Quantity(TIME, "1", "piece of uninterrupted samples the epoch belongs to"),
     "sign": Quantity(("run", "piece_number"), "1", "sign given to each piece"),
+    "hypothesis_sign": Quantity(
+        ("run", "hypothesis", "piece_number"), "1", "signs that the search tried for its pieces"
+    ),
+    "hypothesis_score": Quantity(("run", "hypothesis"), "1", "penalty of these signs"),
+    "hypothesis_q0": Quantity(
+        ("run", "hypothesis", "time_s"), "1", "first component of q_if, recovered with them"
+    ),
     "objective": Quantity(("run", "quaternion"), "1", "objective of each component's recovery"),
     "iterations": Quantity(("run", "quaternion"), "1", "iterations of each component's recovery"),
+    "exact_recovery": Quantity(
+        RUN, "1", "exact recovery coefficient of the lines of the scalar part", "1"
+    ),
     "lines": Quantity(RUN, "1", "lines of the recovered spectrum", "1"),
     "recovered_pitch": Quantity(TIME, "rad", "pitch error of the recovered attitude", "deg"),
     "recovered_attitude": Quantity(TIME, "rad", "angle error of the recovered attitude", "deg"),
@@ -17,7 +27,7 @@ QUANTITIES = {
     "gap_pitch": Quantity(RUN, "rad", "RMS of recovered_pitch inside the gaps", "deg"),
     "gap_attitude": Quantity(RUN, "rad", "RMS of recovered_attitude inside the gaps", "deg"),
     "coverage": Quantity(RUN, "1", "share of epochs with an attitude", "1"),
-    "pieces": Quantity(RUN, "1", "pieces of uninterrupted samples", "1"),
+    "pieces": Quantity(RUN, "1", "pieces of uninterrupted samples", "1", two_sided=True),
     "signs_right": Quantity(RUN, "1", "share of sign decisions that were right", "1"),
     "signs_all_right": Quantity(RUN, "1", "every sign of the run right", "1"),
     "solved": Quantity(RUN, "1", "recovery converged in every component", "1"),

@@ -10,7 +10,7 @@ from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
 from debrisest.dynamics.pointing import camera_axes
-from debrisest.roles import NonNegative, Positive, SimulationPart
+from debrisest.roles import Limits, NonNegative, Positive, SimulationPart
 from debrisest.sensors import pinhole
 from debrisest.target.start_frame import attitude_in_hill
 from debrisest.target.surface import (
@@ -23,6 +23,7 @@ from debrisest.target.surface import (
 from debrisest.target.visibility import back_face_visible
 
 Share = Annotated[float, Field(ge=0, le=1)]
+HalfSize = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 HalfSides = Annotated[list[Positive], Field(min_length=3, max_length=3)]
 
 
@@ -49,6 +50,8 @@ class CameraRange(SimulationPart):
     range_noise_m: Positive = 0.01
     range_to: Literal["centre", "surface"] = "centre"
     half_sides_m: HalfSides | None = Field(None, description="of the body, a box")
+    half_size_px: HalfSize | None = Field(None, description="half the width and the height")
+    dark_s: list[Limits[NonNegative]] = Field([], description="eclipses: no pixels from, to before")
     visibility: Literal["all", "back_face", "box"] = "all"
     missing_share: Share = 0.0
     false_match_share: Share = 0.0
@@ -74,6 +77,7 @@ class CameraRange(SimulationPart):
         pixels = pinhole.project(points_c, self.focal_px) + self.pixel_noise_px * noise
         pixels = self._with_false_matches(pixels, draws)
         seen = self._seen(data, pixels.shape[1:-1], draws)
+        seen &= self._lit(clock.times)[:, None] & self._inside(pixels)
         pixels[~seen] = np.nan
         runs = len(draws.runs)
         return {
@@ -98,6 +102,16 @@ class CameraRange(SimulationPart):
         points_c = points_in_camera(data, q_hc)
         _require_in_front(points_c, data["time_s"])
         return q_hc, points_c
+
+    def _lit(self, times: Array) -> BoolArray:
+        """Epochs (time,) at which the target is not in the Earth's shadow."""
+        dark = [(times >= begin) & (times < end) for begin, end in self.dark_s]
+        return np.asarray(~np.any([np.zeros(len(times), bool), *dark], axis=0))
+
+    def _inside(self, pixels: Array) -> BoolArray:
+        """Points (run, time, feature) whose pixels lie inside the image."""
+        half_size = np.inf if self.half_size_px is None else np.array(self.half_size_px)
+        return np.asarray(np.all(np.abs(pixels) <= half_size, axis=-1))
 
     def _image_noise(self) -> float:
         """Rounding to whole pixels adds the variance of a uniform error, 1/12."""

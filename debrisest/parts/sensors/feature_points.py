@@ -37,9 +37,20 @@ class FeaturePoints(SimulationPart):
         Annotated[NonNegative, Tag("value")] | Annotated[Limits[Positive], Tag("limits")],
         Discriminator(_value_or_limits),
     ] = Field(description="one value, or limits of a draw")
+    depth_noise_factor: Positive = Field(
+        1.0, description="noise along the line of sight over that across; told is the RMS of all"
+    )
+    attitude_noise_deg: NonNegative = Field(
+        0.0, description="white noise of the chaser's attitude per axis, which nobody is told"
+    )
     visibility: Literal["back_face", "all"] = "back_face"
+    missing_share: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    outages_s: list[Limits[NonNegative]] = Field([], description="from, and to before which")
     wrong_match_share: Annotated[float, Field(ge=0, lt=1)] = 0.0
     biased_feature: BiasedFeature | None = None
+    feature_error_m: NonNegative = Field(
+        0.0, description="of the known place of every feature per axis, drawn for each run"
+    )
     seen_for_s: Limits[Positive] | None = Field(default=None, description="lower and upper limit")
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
@@ -48,18 +59,37 @@ class FeaturePoints(SimulationPart):
         rotated = quaternion.rotate(q_ib[..., None, :], points + self._bias(data, draws))
         noise = draws.normal(Stream.MEASUREMENT_NOISE, rotated.shape[1:])
         sigma = self._sigma(draws)
-        measured = (
-            data["true_position"][..., None, :] + rotated + sigma[:, None, None, None] * noise
-        )
+        exact = self._turned(data["true_position"][..., None, :] + rotated, draws)
+        measured = exact + sigma[:, None, None, None] * self._deepened(noise, data["true_position"])
         if self.visibility == "back_face":
             seen = back_face_visible(
                 points, data["true_normal_b"][:, None], q_ib, -data["true_position"]
             )
             measured[~seen] = np.nan
         measured[self._unseen(clock.times, draws)] = np.nan
+        if self.missing_share:
+            missed = draws.uniform(Stream.CLUTTER, measured.shape[1:-1]) < self.missing_share
+            measured[missed] = np.nan
         if self.wrong_match_share:
             measured = with_wrong_matches(measured, self.wrong_match_share, draws)
-        return {"measured_point": measured, "point_noise": sigma}
+        told = np.sqrt((2.0 + self.depth_noise_factor**2) / 3.0)
+        return {"measured_point": measured, "point_noise": told * sigma}
+
+    def _deepened(self, noise: Array, position: Array) -> Array:
+        """Noise (run, time, feature, 3), along the line of sight so many times as large."""
+        if self.depth_noise_factor == 1.0:
+            return noise
+        sight = (position / np.linalg.norm(position, axis=-1, keepdims=True))[..., None, :]
+        along = np.sum(noise * sight, axis=-1, keepdims=True) * sight
+        return np.asarray(noise + (self.depth_noise_factor - 1.0) * along)
+
+    def _turned(self, points: Array, draws: Draws) -> Array:
+        """Points (run, time, feature, 3) in axes that the chaser takes for inertial ones."""
+        if self.attitude_noise_deg == 0.0:
+            return points
+        noise = draws.normal(Stream.CLUTTER, (points.shape[1], 3))
+        error = quaternion.exp(np.radians(self.attitude_noise_deg) * noise)
+        return quaternion.rotate(error[..., None, :], points)
 
     def _sigma(self, draws: Draws) -> Array:
         if not isinstance(self.noise_m, list):
@@ -69,10 +99,12 @@ class FeaturePoints(SimulationPart):
 
     def _unseen(self, times: Array, draws: Draws) -> BoolArray:
         """Epochs (run, time) without any point."""
-        if self.seen_for_s is None:
-            return np.zeros((len(draws.runs), len(times)), dtype=bool)
-        low, high = self.seen_for_s
-        return np.asarray(times >= low + (high - low) * draws.uniform(Stream.CLUTTER, (1,)))
+        spans = [(times >= begin) & (times < end) for begin, end in self.outages_s]
+        result = np.tile(np.any([np.zeros(len(times), bool), *spans], axis=0), (len(draws.runs), 1))
+        if self.seen_for_s is not None:
+            low, high = self.seen_for_s
+            result |= times >= low + (high - low) * draws.uniform(Stream.CLUTTER, (1,))
+        return result
 
     def _bias(self, data: Data, draws: Draws) -> Array:
         """Offset of the features (run, 1, feature, 3), in a direction of each run's own."""
@@ -87,4 +119,6 @@ class FeaturePoints(SimulationPart):
             way = draws.normal(Stream.CLUTTER, (3,))
             way *= self.biased_feature.by_m / np.linalg.norm(way, axis=-1, keepdims=True)
             result[:, 0, names.index(self.biased_feature.name)] = way
+        if self.feature_error_m:
+            result += self.feature_error_m * draws.normal(Stream.CLUTTER, result.shape[1:])
         return result

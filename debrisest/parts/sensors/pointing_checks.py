@@ -1,5 +1,7 @@
 """What the pointing control needs of clock, camera and orbits, each refusal in a sentence."""
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
@@ -15,6 +17,15 @@ def control_steps(step: float, control_step: float) -> int:
             f"and at least step_s / {_MOST}"
         )
     return int(np.ceil(step / control_step - 1e-9))
+
+
+def require_known(given: Iterable[str], observers: Sequence[str]) -> None:
+    """Refuse names of satellites that the scenario does not have."""
+    for name in given:
+        if name not in observers:
+            raise ValueError(
+                f"satellites: no observer is called {name}; there are {', '.join(observers)}"
+            )
 
 
 def require_room(margin: float, half_size: Array) -> None:

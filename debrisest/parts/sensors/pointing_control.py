@@ -4,23 +4,36 @@ from functools import lru_cache
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import euler, quaternion
 from debrisest.clock import Clock
 from debrisest.control.camera import Camera
 from debrisest.control.closed_loop import ClosedLoop, Factors, Frozen
-from debrisest.control.rigid_spacecraft import spacecraft
+from debrisest.control.rigid_spacecraft import Spacecraft, scaled, spacecraft
 from debrisest.control.robust_term import Reading, Uncertainty
 from debrisest.control.track import seen_from
 from debrisest.control.two_stage import Controller
 from debrisest.draws import Draws, Stream
 from debrisest.dynamics.local_frame import Axes, local_axes
-from debrisest.parts.sensors.pointing_checks import control_steps, require_room, require_view
-from debrisest.parts.sensors.pointing_keys import Holding, Switching, Tracking, gains, switch
-from debrisest.parts.sensors.pointing_results import epochs, history, scalars
-from debrisest.roles import NonNegative, Positive, SimulationPart, Vector3
+from debrisest.parts.sensors.pointing_checks import (
+    control_steps,
+    require_known,
+    require_room,
+    require_view,
+)
+from debrisest.parts.sensors.pointing_keys import (
+    Holding,
+    OwnSatellite,
+    Switching,
+    Tensor,
+    Tracking,
+    gains,
+    switch,
+)
+from debrisest.parts.sensors.pointing_results import epochs, history, mismatches, scalars
+from debrisest.roles import NonNegative, Positive, SimulationPart
 from debrisest.sensors.pinhole import BODY_TO_CAMERA
 from debrisest.vocabulary import has_runs
 
@@ -38,17 +51,24 @@ class PointingControl(SimulationPart):
     The controller sees the debris' own pixel and never an estimate.
     """
 
-    version = 2
+    version = 3
     tried = True
-    needs = _INPUTS
+    needs = (*_INPUTS, "observer")
     truths = (
         *("true_q_ic", "true_euler", "true_pixel", "cameras_at_start", "pointing_status"),
         *("control_pixel", "first_section", "settling_time", "stage_one_time"),
-        *("peak_torque", "total_variation", "final_angle"),
+        *("peak_torque", "total_variation", "final_angle", "drift_mismatch", "gain_mismatch"),
     )
     knows = ("section", "control_time_s", "torque")
     kind: Literal["pointing_control"]
-    inertia_kg_m2: Annotated[list[Vector3], Field(min_length=3, max_length=3)]
+    inertia_kg_m2: Tensor
+    satellites: dict[str, OwnSatellite] = Field({}, description="what differs, by observer")
+    inertia_error: NonNegative = Field(
+        0.0, description="of the real second moments of mass, drawn for each run and satellite"
+    )
+    torque_error: NonNegative = Field(
+        0.0, description="of the share of each torque that acts, drawn likewise"
+    )
     axes: Axes = Field("repaired", description="local orbital axes that angles count from")
     robust_term: Reading = "literal"
     margin_px: NonNegative = Field(2.5, description="from the edge, where turning starts")
@@ -69,14 +89,9 @@ class PointingControl(SimulationPart):
     )
     tracking: Tracking = Tracking()
     holding: Holding = Holding()
+    desired_px: Annotated[list[float], Field(min_length=2, max_length=2)] = [0.0, 0.0]
     switching: Switching = Switching()
     store_every: Annotated[int, Field(ge=1)] = Field(25, description="control steps")
-
-    @field_validator("inertia_kg_m2")
-    @classmethod
-    def _of_a_body(cls, inertia: list[list[float]]) -> list[list[float]]:
-        spacecraft(np.array(inertia))
-        return inertia
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude, sections, exact pixels, and what the controller did.
@@ -84,11 +99,14 @@ class PointingControl(SimulationPart):
         Where all runs are alike, which is usual, one is simulated for all of them.
         """
         inputs = [np.asarray(data[name], dtype=np.float64) for name in _INPUTS]
-        if self.errors == "white" or any((x != x[:1]).any() for x in inputs):
-            return _simulated(self, inputs, clock, draws)
+        names = tuple(str(name) for name in data["observer"])
+        require_known(self.satellites, names)
+        drawn = self.errors == "white" or self.inertia_error or self.torque_error
+        if drawn or any((x != x[:1]).any() for x in inputs):
+            return _simulated(self, names, inputs, clock, draws)
         packed = ((x.shape[1:], x[0].tobytes()) for x in inputs)
         times, runs = clock.times.tobytes(), len(draws.runs)
-        one = _simulated_once(self.model_dump_json(), times, *packed)
+        one = _simulated_once(self.model_dump_json(), names, times, *packed)
         return {
             name: np.repeat(value, runs, axis=0) if has_runs(name) else value.copy()
             for name, value in one.items()
@@ -96,20 +114,27 @@ class PointingControl(SimulationPart):
 
 
 @lru_cache(maxsize=4)
-def _simulated_once(part: str, times: bytes, *inputs: tuple[tuple[int, ...], bytes]) -> Data:
+def _simulated_once(
+    part: str, names: tuple[str, ...], times: bytes, *inputs: tuple[tuple[int, ...], bytes]
+) -> Data:
     """The same for all chunks of runs that have the same inputs."""
     arrays = [np.frombuffer(values).reshape(1, *shape) for shape, values in inputs]
     clock = Clock(np.frombuffer(times))
-    return _simulated(PointingControl.model_validate_json(part), arrays, clock, None)
+    return _simulated(PointingControl.model_validate_json(part), names, arrays, clock, None)
 
 
 def _simulated(
-    part: PointingControl, inputs: list[Array], clock: Clock, draws: Draws | None
+    part: PointingControl,
+    names: tuple[str, ...],
+    inputs: list[Array],
+    clock: Clock,
+    draws: Draws | None,
 ) -> Data:
     observers = inputs[2], inputs[3]
     require_room(part.margin_px, inputs[5])
-    loop = _loop(part, inputs, clock, draws)
-    angles = np.zeros(loop.track.point_o[:, 0].shape)
+    loop = _loop(part, names, inputs, clock, draws)
+    starts = [np.radians(own.angles_deg) for own in _own(part, names)]
+    angles = np.zeros(loop.track.point_o[:, 0].shape) + starts
     visible = loop.in_view(angles)
     if part.axes == "repaired":
         require_view(visible)
@@ -122,16 +147,27 @@ def _simulated(
         "cameras_at_start": visible.sum(-1).astype(np.float64),
         **epochs(happened),
         **history(happened, clock, part.store_every),
-        **scalars(happened, clock),
+        **scalars(happened, clock, loop.controller.desired),
+        **mismatches(happened, loop),
     }
 
 
+def _own(part: PointingControl, names: tuple[str, ...]) -> list[OwnSatellite]:
+    return [part.satellites.get(name, OwnSatellite()) for name in names]
+
+
 def _loop(
-    part: PointingControl, inputs: list[Array], clock: Clock, draws: Draws | None
+    part: PointingControl,
+    names: tuple[str, ...],
+    inputs: list[Array],
+    clock: Clock,
+    draws: Draws | None,
 ) -> ClosedLoop:
     position, velocity, observer_position, observer_velocity, scale, half_size = inputs
     track = seen_from(position, velocity, observer_position, observer_velocity, part.axes)
-    craft = spacecraft(np.array(part.inertia_kg_m2))
+    own = (satellite.inertia_kg_m2 or part.inertia_kg_m2 for satellite in _own(part, names))
+    craft = spacecraft(np.array(list(own)))
+    plant, delivered = _plant(part, craft, len(scale), draws)
     camera = Camera(scale[:, None], half_size[:, None], part.margin_px, part.whole_pixels)
     controller = Controller(
         craft=craft,
@@ -143,19 +179,33 @@ def _loop(
         switch=switch(part.switching),
         torque_limit=np.inf if part.torque_limit_n_m is None else part.torque_limit_n_m,
         anti_windup=part.anti_windup,
+        desired=np.array(part.desired_px),
     )
     substeps = control_steps(clock.step, part.control_step_s)
     return ClosedLoop(
         controller=controller,
         camera=camera,
-        plant=craft,
+        plant=plant,
         track=track,
         step=clock.step,
         substeps=substeps,
         factors=_factors(part, (substeps, observer_position.shape[2], 6), len(scale), draws),
         turning_axes=part.orbital_rate == "counted",
         frozen=part.held_in,
+        delivered=delivered,
     )
+
+
+def _plant(
+    part: PointingControl, craft: Spacecraft, runs: int, draws: Draws | None
+) -> tuple[Spacecraft, Array | float]:
+    """The satellites as they really are, and the share of each torque that acts."""
+    if draws is None:
+        return craft, 1.0
+    shape = (2, len(craft.inertia), 3)
+    mass, torque = np.moveaxis(draws.normal(Stream.TRUTH, shape), 1, 0)
+    inertia = scaled(craft.inertia, np.exp(part.inertia_error * mass))
+    return spacecraft(inertia), np.exp(part.torque_error * torque)
 
 
 def _factors(

@@ -3,18 +3,34 @@
 from typing import Annotated, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from debrisest.control import attitude_hold, pixel_tracking
+from debrisest.control.rigid_spacecraft import spacecraft
 from debrisest.control.robust_term import Gains
 from debrisest.control.two_stage import Switch
-from debrisest.roles import Keys, NonNegative, Positive
+from debrisest.roles import Keys, NonNegative, Positive, Vector3
 
 _SWITCH = Switch()
 
 _Pair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 _Triple = Annotated[list[Positive], Field(min_length=3, max_length=3)]
 _Five = Annotated[list[Positive], Field(min_length=5, max_length=5)]
+
+
+def _of_a_body(inertia: list[list[float]]) -> list[list[float]]:
+    spacecraft(np.array(inertia))
+    return inertia
+
+
+Tensor = Annotated[list[Vector3], Field(min_length=3, max_length=3), AfterValidator(_of_a_body)]
+
+
+class OwnSatellite(Keys):
+    """What one satellite has of its own."""
+
+    inertia_kg_m2: Tensor | None = None
+    angles_deg: Vector3 = Field([0.0, 0.0, 0.0], description="Euler angles 3-2-1 at the start")
 
 
 class Tracking(Keys):

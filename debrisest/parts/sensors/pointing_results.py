@@ -2,10 +2,12 @@
 
 import numpy as np
 
-from debrisest.arrays import BoolArray, Data
+from debrisest.arrays import Array, BoolArray, Data
 from debrisest.clock import Clock
-from debrisest.control.closed_loop import Pointing
+from debrisest.control.closed_loop import ClosedLoop, Pointing
 from debrisest.control.metrics import section_metrics
+from debrisest.control.model_error import drift_mismatch, gain_mismatch
+from debrisest.control.rigid_spacecraft import over_time
 
 _KEPT = "in view of every camera at each epoch"
 _LOST = "not in view of every camera at each epoch"
@@ -36,12 +38,40 @@ def history(happened: Pointing, clock: Clock, every: int) -> Data:
     return {"control_time_s": times, "torque": torque, "control_pixel": pixel}
 
 
-def scalars(happened: Pointing, clock: Clock) -> Data:
+def mismatches(happened: Pointing, loop: ClosedLoop) -> Data:
+    """How far the spacecraft are from the controller's model, the worst satellite; NaN if unturned.
+
+    Of the state function the error's root mean square over that of the model, of the input matrix
+    the largest value, both at the epochs of all control sections.
+    """
+    turning: BoolArray = np.asarray(np.isfinite(happened.rate_b[:, :, 0]).all(-1))
+    true = happened.angles, np.nan_to_num(happened.rate_b[:, :, 0])
+    factors = loop.factors()[:, None, 0]
+    measured = true[0] * factors[..., :3], true[1] * factors[..., 3:]
+    model, plant = loop.controller.craft, over_time(loop.plant)
+    error, modelled = drift_mismatch(model, plant, true, measured)
+    above, below = (
+        np.sum(np.where(turning[..., None], x**2, 0.0), axis=(1, 3)) for x in (error, modelled)
+    )
+    delivered = np.asarray(loop.delivered)
+    gain = gain_mismatch(
+        model, plant, delivered[:, None] if delivered.ndim else 1.0, true[0], measured[0]
+    )
+    with np.errstate(invalid="ignore"):
+        drift = np.sqrt(above / below)
+    largest = np.where(turning, gain, -np.inf).max(axis=1)
+    return {
+        "drift_mismatch": drift.max(axis=-1),
+        "gain_mismatch": np.where(np.isfinite(largest), largest, np.nan).max(axis=-1),
+    }
+
+
+def scalars(happened: Pointing, clock: Clock, desired: Array) -> Data:
     """When the first control section begins, and of it the worst satellite; NaN without one.
 
     NaN too where the scenario ends within it, and the settling time where a satellite has none.
     """
-    metrics = section_metrics(happened, 1, clock.step)
+    metrics = section_metrics(happened, 1, clock.step, desired)
     return {
         "first_section": metrics.start,
         "settling_time": metrics.settling_time.max(-1),

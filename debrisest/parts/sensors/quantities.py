@@ -50,6 +50,12 @@ QUANTITIES = {
     "stage_one_time": Quantity(RUN, "s", "length of the first stage of control", "s"),
     "peak_torque": Quantity(RUN, "N m", "largest component of the torque", "mN m"),
     "total_variation": Quantity(RUN, "N m", "sum of the steps of a torque component", "mN m"),
+    "drift_mismatch": Quantity(
+        RUN, "1", "error of the modelled state function over that function (F)", "1"
+    ),
+    "gain_mismatch": Quantity(
+        RUN, "1", "largest entry of B B_model^-1 - I, B the matrix of the torques (D)", "1"
+    ),
     "final_angle": Quantity(RUN, "rad", "largest Euler angle after turning", "deg"),
     "true_q_hc": Quantity(TIME_QUATERNION, "1", "attitude of the camera, camera to Hill axes"),
     "known_q_hc": Quantity(TIME_QUATERNION, "1", "the same as the estimators know it"),

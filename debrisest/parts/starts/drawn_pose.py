@@ -5,12 +5,15 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from debrisest.arrays import Data
+from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
-from debrisest.draws import Draws, drawn_about
+from debrisest.draws import Draws, Stream, drawn_about
+from debrisest.dynamics.inertia_ratios import slopes
 from debrisest.roles import Positive, SimulationPart
 
+_TRIES = 1000
+"""Draws of the inertia ratios, of which the first that is a body's counts."""
 _NAMES = ("position", "velocity", "rate_l", "q_lt", "inertia_ratio", "point_b")
 
 
@@ -26,6 +29,9 @@ class DrawnPose(SimulationPart):
     q_sigma: Positive = Field(description="of every component; twice that is the angle's")
     inertia_ratio_sigma: Positive
     point_sigma_m: Positive
+    bodies_only: bool = Field(
+        False, description="draw inertia ratios again until they obey the triangle inequality"
+    )
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the drawn state and its known sigma; the quaternion has unit norm again."""
@@ -43,4 +49,13 @@ class DrawnPose(SimulationPart):
             true = data[f"true_{name}"] if constant else data[f"true_{name}"][:, 0]
             result |= drawn_about(f"start_{name}", true, sigma, draws)
         result["start_q_lt"] = quaternion.normalize(result["start_q_lt"])
+        if self.bodies_only:
+            result["start_inertia_ratio"] = self._body(data["true_inertia_ratio"], draws)
         return result
+
+    def _body(self, true: Array, draws: Draws) -> Array:
+        """Return the first ratios (run, 2) drawn about the true ones that a body can have."""
+        noise = draws.normal(Stream.INITIAL_ERROR, (_TRIES, 2))
+        drawn = true[:, None] + self.inertia_ratio_sigma * noise
+        first = (np.abs(slopes(drawn)) < 1.0).all(-1).argmax(axis=1)
+        return np.asarray(drawn[np.arange(len(true)), first])

@@ -9,6 +9,7 @@ from debrisest.arrays import Array, Data
 from debrisest.attitude.points import features_frame
 from debrisest.clock import Clock
 from debrisest.draws import Draws
+from debrisest.dynamics.inertia_ratios import ratios
 from debrisest.parts.truth.each_run import each_run
 from debrisest.roles import Keys, SimulationPart, Vector3
 
@@ -64,6 +65,9 @@ def _direction(normal: list[float]) -> list[float]:
     return normal
 
 
+_RATIO = "true_inertia_ratio"
+
+
 class Feature(Keys):
     """A recognisable point of the target and the outward normal of the surface there."""
 
@@ -84,13 +88,18 @@ def _at_least_three(points: dict[str, Feature]) -> dict[str, Feature]:
 class RigidPoints(SimulationPart):
     """Named features on a rigid body; the origin is the centre of mass, the axes are ``b``."""
 
-    truths = ("true_point_b", "true_normal_b", "true_inertia_b")
+    truths = ("true_point_b", "true_normal_b", "true_inertia_b", "true_inertia_ratio")
     knows = ("known_point_f",)
     kind: Literal["rigid_points"]
     inertia_kg_m2: Inertia = Field(
         description="three principal moments, or the rows of the tensor; scale is free"
     )
     points: Annotated[dict[str, Feature], AfterValidator(_at_least_three)]
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Return the datasets that this body gives: ratios only along principal axes."""
+        return tuple(name for name in self.can_give() if name != _RATIO or self._principal())
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the body's geometry and inertia, the same in every run."""
@@ -102,7 +111,13 @@ class RigidPoints(SimulationPart):
             "true_normal_b": self._normals(),
             "true_inertia_b": inertia_tensor(self.inertia_kg_m2),
         }
+        if self._principal():
+            same[_RATIO] = ratios(np.diag(same["true_inertia_b"]))
         return {"feature": np.array(list(self.points)), **each_run(same, draws)}
+
+    def _principal(self) -> bool:
+        tensor = inertia_tensor(self.inertia_kg_m2)
+        return bool(np.all(tensor == np.diag(np.diag(tensor))))
 
     def _positions(self) -> Array:
         return np.array([feature.position_m for feature in self.points.values()])

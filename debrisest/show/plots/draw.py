@@ -29,6 +29,7 @@ from debrisest.show.plots import (
     recovered_quaternion,
     relative_trajectory,
     shape,
+    sign_hypotheses,
     torques,
 )
 from debrisest.show.plots.files import write
@@ -56,6 +57,9 @@ FIGURES: dict[str, Kind] = {
     "recovered_quaternion": Kind(
         recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
     ),
+    "first_hypotheses": Kind(sign_hypotheses.first_hypotheses, sign_hypotheses.DATASETS),
+    "hypothesis_scores": Kind(sign_hypotheses.hypothesis_scores, sign_hypotheses.DATASETS),
+    "next_hypotheses": Kind(sign_hypotheses.next_hypotheses, sign_hypotheses.DATASETS),
     "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma", "moments_b")),
     "motion": Kind(motion.motion, motion.DATASETS),
     "error_over_time": Kind(

@@ -7,10 +7,13 @@ import pandas as pd
 
 from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
+from debrisest.show.tables.published import CellKey, derived_values
 from debrisest.show.tables.verdict import CONSISTENCY, SYMBOLS, Verdict
 from debrisest.vocabulary import VOCABULARY
 
 PAPER = "paper"
+DERIVED = "*"
+"""Stands after a published value that is not printed so."""
 _SHOWN = {SIMULATED: "simulated"}
 """Sources that are called otherwise in a laid-out table."""
 
@@ -27,6 +30,9 @@ class Sheet(NamedTuple):
 def sheets(scenario: LoadedScenario, cells: pd.DataFrame) -> list[Sheet]:
     """Return one sheet for each table and window of the scenario that has cells."""
     found = []
+    derived = derived_values(scenario, cells)
+    marked = [CellKey(*row) in derived for row in cells[list(CellKey._fields)].to_numpy()]
+    cells = cells.assign(mark=[DERIVED * is_marked for is_marked in marked])
     for table in scenario.common.tables.layout:
         for statistic, window in product(table.statistics, table.windows):
             chosen = cells[
@@ -77,8 +83,8 @@ def _text(part: pd.DataFrame, source: str, quantity: str) -> str:
     """Return a figure of three digits, its verdict's sign, and before it the runs left out."""
     part = part[part["quantity"] == quantity]
     if source == PAPER:
-        published = part["published"].dropna()
-        return f"{published.iloc[0]:.3g}" if len(published) else ""
+        published = part[part["published"].notna()]
+        return "".join(f"{row.published:.3g}{row.mark}" for row in published[:1].itertuples())
     own = part[part["estimator"] == source]
     if own.empty:
         return ""

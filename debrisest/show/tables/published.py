@@ -3,6 +3,7 @@
 Columns ``table, case, quantity, statistic, window, published, factor``, then one per estimator
 with its expected verdict, alternatives separated by ``|``. ``factor`` is the tolerance factor.
 A consistency, of which nothing is published, has neither, and is expected in words.
+Of a value that is not printed itself, a column ``derived`` may say how it was made from what is.
 """
 
 import csv
@@ -10,6 +11,8 @@ from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 from typing import NamedTuple
+
+import pandas as pd
 
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.errors import UserError
@@ -21,6 +24,7 @@ from debrisest.show.tables.verdict import CONSISTENCY, Verdict
 from debrisest.vocabulary import VOCABULARY
 
 _COLUMNS = ("table", "case", "quantity", "statistic", "window", "published", "factor")
+_DERIVED = "derived"
 
 
 class CellKey(NamedTuple):
@@ -39,6 +43,8 @@ class Published(NamedTuple):
     value: float | None
     factor: float
     expected: dict[str, list[Verdict]]
+    derived: str = ""
+    """How it was made from what is printed; empty: it is printed so."""
 
 
 class PublishedFile(NamedTuple):
@@ -54,6 +60,16 @@ def published_values(scenario: LoadedScenario) -> dict[CellKey, Published]:
     """Return the published values that a scenario names, if it names any."""
     file = _published_file(scenario)
     return file.values if file else {}
+
+
+def derived_values(scenario: LoadedScenario, cells: pd.DataFrame) -> dict[CellKey, str]:
+    """Return how those of the cells' published values were made that are not printed so."""
+    shown = set(cells[list(CellKey._fields)].itertuples(index=False, name=None))
+    return {
+        key: value.derived
+        for key, value in published_values(scenario).items()
+        if value.derived and key in shown
+    }
 
 
 def check_published(scenario: LoadedScenario) -> None:
@@ -97,7 +113,11 @@ def load_published(path: Path) -> PublishedFile:
             problems.append(f"{path}:{line}: {error}")
     if problems:
         raise UserError(problems)
-    return PublishedFile(path, [name for name in header if name not in _COLUMNS], values, lines)
+    return PublishedFile(path, [name for name in header if _estimator(name)], values, lines)
+
+
+def _estimator(column: str) -> bool:
+    return column not in (*_COLUMNS, _DERIVED)
 
 
 def _read(path: Path) -> list[tuple[int, list[str]]]:
@@ -131,13 +151,13 @@ def _parse(header: list[str], row: list[str]) -> tuple[CellKey, Published]:
     expected = {
         name: [_verdict(word) for word in words.split("|")]
         for name, words in named.items()
-        if name not in _COLUMNS and words
+        if _estimator(name) and words
     }
     wrong = [v for said in expected.values() for v in said if (value is None) != (v in CONSISTENCY)]
     if wrong:
         told = "with a published value" if value is not None else "without a published value"
         raise ValueError(f"{wrong[0].value!r} is no verdict on a cell {told}")
-    return key, Published(value, factor, expected)
+    return key, Published(value, factor, expected, named.get(_DERIVED, ""))
 
 
 def _value(published: str, factor: str) -> tuple[float | None, float]:

@@ -11,7 +11,8 @@ from rich.text import Text
 
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.tables.escapes import latex, markdown, paragraph
-from debrisest.show.tables.layout import Sheet, sheets
+from debrisest.show.tables.layout import DERIVED, Sheet, sheets
+from debrisest.show.tables.published import derived_values
 from debrisest.show.tables.verdict import (
     CONSISTENCY,
     LEGEND,
@@ -58,7 +59,7 @@ def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
 
 def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     common = scenario.common
-    parts = [f"# {markdown(common.title)}", paragraph(common.source), *_legends(cells)]
+    parts = [f"# {markdown(common.title)}", paragraph(common.source), *_legends(scenario, cells)]
     for sheet in sheets(scenario, cells):
         lines = [sheet.heads, ["---"] * len(sheet.heads), *sheet.rows]
         escaped = [[markdown(text) for text in line] for line in lines]
@@ -67,16 +68,18 @@ def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     return "\n\n".join(part for part in (*parts, f"<!-- {MARK} -->") if part) + "\n"
 
 
-def _legends(cells: pd.DataFrame) -> list[str]:
+def _legends(scenario: LoadedScenario, cells: pd.DataFrame) -> list[str]:
     """Return what explains the signs, the numbers in brackets and the words of these cells."""
+    made = "; ".join(dict.fromkeys(derived_values(scenario, cells).values()))
     signs = [LEGEND] if cells["published"].notna().any() else []
     lost = [LEGEND_OF_LOST] if (cells["failed"] + cells["diverged"] > 0).any() else []
     words = [LEGEND_OF_CONSISTENCY] if cells["verdict"].isin(CONSISTENCY).any() else []
-    return ["; ".join(signs + lost)] * bool(signs + lost) + words
+    derived = [f"{DERIVED} not printed so: {made}"] if made else []
+    return ["; ".join(signs + lost)] * bool(signs + lost) + derived + words
 
 
 def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    legends = _legends(cells)
+    legends = _legends(scenario, cells)
     parts = ["\n".join(f"% {text}" for text in (scenario.common.title, *legends))]
     for sheet in sheets(scenario, cells):
         head, *rows = (
@@ -103,7 +106,7 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
             title = Text(f"\nTable {sheet.number}: {sheet.title}", style="bold")
             console.print(title, soft_wrap=True)
             console.print(_fitting(sheet, console))
-        for text in _legends(cells):
+        for text in _legends(scenario, cells):
             console.print(f"{text}\n", style="dim", soft_wrap=True)
     return capture.get()
 

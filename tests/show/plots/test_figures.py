@@ -13,6 +13,11 @@ from debrisest.show.plots.error_over_time import error_over_time
 from debrisest.show.plots.rates import rates
 from debrisest.show.plots.raw_quaternion import raw_quaternion
 from debrisest.show.plots.recovered_quaternion import recovered_quaternion
+from debrisest.show.plots.sign_hypotheses import (
+    first_hypotheses,
+    hypothesis_scores,
+    next_hypotheses,
+)
 
 EPOCHS = 400
 TIMES = np.arange(EPOCHS, dtype=float)
@@ -200,3 +205,40 @@ def test_long_contexts_are_wrapped(data: Data) -> None:
     texts = figure.axes[0].findobj(lambda artist: "0.12345" in getattr(artist, "get_text", str)())
     assert len(texts) == 1
     assert 0 < texts[0].get_window_extent().x1 < figure.bbox.x1
+
+
+@pytest.fixture
+def tried(data: Data) -> Data:
+    """Both signs of the second piece; the one that turns it is the better one."""
+    sign = np.array([[1.0, 1.0], [1.0, -1.0]])
+    shown = {"hypothesis_sign": sign, "hypothesis_score": np.array([2.0, 1.0])}
+    return data | shown | {"hypothesis_q0": np.tile(data["q_if"][:, 0], (2, 1))}
+
+
+def test_hypotheses_show_the_samples_with_their_signs(tried: Data) -> None:
+    figure = first_hypotheses(tried, "case spin")
+    figure.draw_without_rendering()
+    panels = [axis for axis in figure.axes if axis.get_lines()]
+    assert [axis.texts[0].get_text() for axis in panels] == ["0", "1"]
+    raw, second = tried["raw_q_if"][:, 0], tried["piece"] == 1
+    for axis, factor in zip(panels, (1.0, -1.0)):
+        samples, signal = (line.get_ydata() for line in axis.get_lines())
+        np.testing.assert_array_equal(samples[second], factor * raw[second])
+        np.testing.assert_array_equal(signal, tried["q_if"][:, 0])
+
+
+def test_the_bars_are_the_penalties(tried: Data) -> None:
+    figure = hypothesis_scores(tried, "case spin")
+    _check(figure, 1)
+    (axis,) = figure.axes
+    assert [bar.get_height() for bar in axis.patches] == [2.0, 1.0]
+    assert [label.get_text() for label in axis.get_xticklabels()] == ["0", "1"]
+
+
+def test_the_step_after_the_first_is_drawn_apart(tried: Data) -> None:
+    first = tried["hypothesis_sign"] * [1.0, np.nan]
+    both = {name: np.concatenate([tried[name]] * 2) for name in tried if "hypothesis" in name}
+    both["hypothesis_sign"] = np.concatenate([first, tried["hypothesis_sign"]])
+    for draw, labels in ((first_hypotheses, ["", ""]), (next_hypotheses, ["0", "1"])):
+        panels = [axis for axis in draw(tried | both, "").axes if axis.get_lines()]
+        assert [axis.texts[0].get_text() for axis in panels] == labels

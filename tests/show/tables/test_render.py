@@ -48,6 +48,20 @@ def test_every_sign_is_explained_and_no_other(
     assert [legend for legend in (SIGNS, LOST, WORDS) if legend in text] == explained
 
 
+@pytest.mark.parametrize("form", ["rich", "md", "tex"])
+@pytest.mark.parametrize("derived", ["", "the mean of two cases"])
+def test_a_published_value_that_is_not_printed_so_is_marked(
+    form: str, derived: str, small: Path, scenario: LoadedScenario
+) -> None:
+    published = small.with_suffix(".csv")
+    header, first, *_ = published.read_text().splitlines()
+    published.write_text(f"{header},derived\n{first},{derived}\n")
+    cell = {"table": "1", "quantity": "pitch", "statistic": "rmse", "published": 0.8}
+    text = render(scenario, table(cell | {"verdict": "reproduced"}), form)
+    assert ("0.8*" in text.replace("\\", "")) is bool(derived)
+    assert (f"* not printed so: {derived}" in text) is bool(derived)
+
+
 def test_latex_without_signs_explains_none(scenario: LoadedScenario) -> None:
     text = render(scenario, table({}), "tex")
     assert text.startswith("% A small tumbling body\n\n")
