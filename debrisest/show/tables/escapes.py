@@ -9,7 +9,7 @@ _LATEX = {ord(sign): f"\\{sign}" for sign in "&%$#_{}"} | {
     ord("<"): "$<$",
     ord(">"): "$>$",
     ord("|"): "$|$",
-    ord('"'): "''",
+    ord('"'): "{''}",
 }
 _MARKDOWN = re.compile(
     r"[\\`*|\[\]$]"  # signs that mean something wherever they stand
