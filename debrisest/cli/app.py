@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from debrisest import __version__
-from debrisest.cli import compare, estimate, estimates, measured, scenarios, show, stages
+from debrisest.cli import compare, estimate, estimates, measured, report, scenarios, show, stages
 from debrisest.cli.exits import Commands
 
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -23,6 +23,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "table": show.table,
     "plot": show.plot,
     "status": show.status,
+    "report": report.report,
     "compare": compare.compare,
     "estimate": estimate.estimate,
     "estimates": estimates.estimates,

@@ -1,6 +1,7 @@
 """The commands that bring results up to date: simulate, recover, filter, sweep."""
 
 import os
+import shlex
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -83,7 +84,13 @@ def sweep(
     selection = select(scenarios, runs, case, estimator, force=force)
     failed = bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
     if not dry_run:
-        exit_if(show_tables(scenarios, out, selection, Format.RICH, check) or failed)
+        wrong = show_tables(scenarios, out, selection, Format.RICH, check)
+        if sys.stderr.isatty() and not quiet:
+            of_runs = ["--runs", str(runs)] if runs else []
+            changed = [text for setting in settings or () for text in ("--set", setting)]
+            asked = [*map(str, configs), "--out", str(out), *of_runs, *changed]
+            print(f"to look at it: {shlex.join(['debrisest', 'report', *asked])}", file=sys.stderr)
+        exit_if(wrong or failed)
 
 
 def _machine(jobs: int | None, cluster: str | None, quiet: bool) -> "Machine":

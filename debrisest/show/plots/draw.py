@@ -95,7 +95,7 @@ def draw_all(scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]) -> I
     """Draw what the results that are up to date allow; yield each file once it is written."""
     folder = out / scenario.name / "plots"
     drawn = False
-    for name, source in _sources(scenario, out, wanted):
+    for name, source in sources(scenario, out, wanted):
         figure = FIGURES[name].draw(source.data, source.context)
         for path in write(figure, folder, "-".join((name, *source.names))):
             drawn = True
@@ -107,7 +107,7 @@ def draw_all(scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]) -> I
         )
 
 
-def _sources(
+def sources(
     scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]
 ) -> Iterator[tuple[str, Source]]:
     """Return every figure that can be drawn, with its data."""

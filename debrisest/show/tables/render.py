@@ -57,7 +57,7 @@ def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
 
 def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     common = scenario.common
-    parts = [f"# {markdown(common.title)}", paragraph(common.source), *_legends(cells)]
+    parts = [f"# {markdown(common.title)}", paragraph(common.source), *legends(cells)]
     for sheet in sheets(scenario, cells):
         lines = [sheet.heads, ["---"] * len(sheet.heads), *sheet.rows]
         escaped = [[markdown(text) for text in line] for line in lines]
@@ -66,7 +66,7 @@ def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     return "\n\n".join(part for part in (*parts, f"<!-- {MARK} -->") if part) + "\n"
 
 
-def _legends(cells: pd.DataFrame) -> list[str]:
+def legends(cells: pd.DataFrame) -> list[str]:
     """Return what explains the signs, the numbers in brackets and the words of these cells."""
     signs = [LEGEND] if cells["published"].notna().any() else []
     lost = [LEGEND_OF_LOST] if (cells["failed"] + cells["diverged"] > 0).any() else []
@@ -75,15 +75,15 @@ def _legends(cells: pd.DataFrame) -> list[str]:
 
 
 def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    legends = _legends(cells)
-    parts = ["\n".join(f"% {text}" for text in (scenario.common.title, *legends))]
+    told = legends(cells)
+    parts = ["\n".join(f"% {text}" for text in (scenario.common.title, *told))]
     for sheet in sheets(scenario, cells):
         head, *rows = (
             " & ".join(latex(text) for text in line) + r" \\" for line in (sheet.heads, *sheet.rows)
         )
         parts.append(
             "\\begin{table}\n"
-            f"\\caption{{{latex(_caption(sheet, legends))}}}\n"
+            f"\\caption{{{latex(_caption(sheet, told))}}}\n"
             f"\\begin{{tabular}}{{{'l' * len(sheet.heads)}}}\n\\hline\n{head}\n\\hline\n"
             + "\n".join(rows)
             + "\n\\hline\n\\end{tabular}\n\\end{table}"
@@ -91,8 +91,8 @@ def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     return "\n\n".join((*parts, f"% {MARK}")) + "\n"
 
 
-def _caption(sheet: Sheet, legends: list[str]) -> str:
-    return ". ".join([f"Table {sheet.number}: {sheet.title}", *legends])
+def _caption(sheet: Sheet, told: list[str]) -> str:
+    return ". ".join([f"Table {sheet.number}: {sheet.title}", *told])
 
 
 def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
@@ -102,7 +102,7 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
             title = Text(f"\nTable {sheet.number}: {sheet.title}", style="bold")
             console.print(title, soft_wrap=True)
             console.print(_fitting(sheet, console))
-        for text in _legends(cells):
+        for text in legends(cells):
             console.print(f"{text}\n", style="dim", soft_wrap=True)
     return capture.get()
 
