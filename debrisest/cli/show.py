@@ -2,9 +2,12 @@
 
 import sys
 from collections.abc import Sequence
+from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from typer import Option
 
 from debrisest.cli.estimates import estimates_of
 from debrisest.cli.exits import exit_if
@@ -23,6 +26,23 @@ from debrisest.cli.options import (
     Settings,
     Unprinted,
 )
+
+
+class FigureFormat(StrEnum):
+    """How figures are written."""
+
+    PNG = "png"
+    SVG = "svg"
+    PDF = "pdf"
+
+
+Figures = Annotated[list[str] | None, Option("--figure", help="Only this figure (repeatable).")]
+OneRun = Annotated[
+    int | None, Option("--run", min=0, help="This run, in figures of one (default: the first).")
+]
+FigureFormats = Annotated[
+    list[FigureFormat] | None, Option("--format", help="Format (repeatable; default: png, svg).")
+]
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -57,18 +77,25 @@ def plot(
     estimator: EstimatorNames = None,
     settings: Settings = None,
     plugins: Plugins = None,
+    figure: Figures = None,
+    run: OneRun = None,
+    form: FigureFormats = None,
     quiet: Unprinted = False,
 ) -> None:
-    """Draw the figures of the results that are up to date, as PNG and SVG."""
+    """Draw the figures of the results that are up to date, by default as PNG and SVG."""
     from debrisest.runner.plan import plan
-    from debrisest.show.plots.draw import draw_all
+    from debrisest.show.plots.draw import Asked, check_asked, draw_all
+    from debrisest.show.plots.files import USUAL
 
+    wanted = Asked(figure or (), run, form or USUAL)
+    check_asked(wanted)
     scenarios = load_all(configs, settings, plugins)
     selection = select(scenarios, runs, case, estimator)
-    asked = [one for one in scenarios if set(one.cases) & set(selection.cases or one.cases)]
-    drawn = [path for one in asked for path in draw_all(one, out, plan(one, out, selection))]
-    if not quiet:
-        print(*drawn, sep="\n")
+    for one in scenarios:
+        if set(one.cases) & set(selection.cases or one.cases):
+            for path in draw_all(one, out, plan(one, out, selection), wanted):
+                if not quiet:
+                    print(path, flush=True)
 
 
 def status(

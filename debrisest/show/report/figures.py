@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from debrisest.results.status import Wanted
 from debrisest.scenario.load import LoadedScenario
-from debrisest.show.plots.draw import FIGURES, sources
+from debrisest.show.plots.draw import draw, sources
 from debrisest.show.plots.style import style
 
 _DPI, _COLOURS = 90, 64
@@ -32,7 +32,7 @@ def pictures(scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]) -> I
         if of in seen:
             continue
         seen.add(of)
-        figure = FIGURES[kind].draw(source.data, source.context)
+        figure = draw(kind, source)
         yield Picture(kind, source.context, _address(figure))
 
 

@@ -4,23 +4,18 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from debrisest.errors import UserError
+from debrisest.show.plots.style import ESTIMATOR_COLOURS
 from debrisest.show.report.chapter import Chapter
 from debrisest.show.tables.verdict import Verdict
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-COLOURS = (
-    *("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"),
-    *("#1a1a1a", "#8c564b", "#7f7f7f", "#6a3d9a", "#b15928", "#b2df8a"),
-)
-"""Of estimators, in their order; the first six are told apart with any kind of colour vision."""
-
 
 def page(chapters: Sequence[Chapter]) -> str:
     """Return the report; raise UserError where jinja2 is not installed."""
     template = _environment().get_template("page.html")
-    return template.render(chapters=chapters, colours=COLOURS, verdicts=list(Verdict))
+    return template.render(chapters=chapters, colours=ESTIMATOR_COLOURS, verdicts=list(Verdict))
 
 
 def _environment() -> "Environment":
