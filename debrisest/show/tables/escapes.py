@@ -9,6 +9,7 @@ _LATEX = {ord(sign): f"\\{sign}" for sign in "&%$#_{}"} | {
     ord("<"): "$<$",
     ord(">"): "$>$",
     ord("|"): "$|$",
+    ord("×"): r"$\times$",
     ord('"'): "{''}",
 }
 _MARKDOWN = re.compile(
