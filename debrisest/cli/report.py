@@ -17,6 +17,7 @@ from debrisest.cli.options import (
     Runs,
     Settings,
     Unprinted,
+    Variant,
 )
 
 
@@ -27,6 +28,7 @@ def report(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
     figures: Annotated[
         bool, Option("--figures/--no-figures", help="With those of the first case.")
@@ -47,7 +49,7 @@ def report(
     from debrisest.show.report.page import page
     from debrisest.show.tables.tabulate import chosen, tabulate
 
-    scenarios = load_all(configs, settings, plugins)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
     chapters = []
     for scenario in scenarios:

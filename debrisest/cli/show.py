@@ -25,6 +25,7 @@ from debrisest.cli.options import (
     Runs,
     Settings,
     Unprinted,
+    Variant,
 )
 
 
@@ -58,13 +59,14 @@ def table(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
     form: Form = Format.RICH,
     check: Check = False,
     quiet: Unprinted = False,
 ) -> None:
     """Write and print the tables of the results that are up to date."""
-    scenarios = load_all(configs, settings, plugins)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
     exit_if(show_tables(scenarios, out, selection, None if quiet else form, check))
 
@@ -76,6 +78,7 @@ def plot(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
     figure: Figures = None,
     run: OneRun = None,
@@ -89,7 +92,7 @@ def plot(
 
     wanted = Asked(figure or (), run, form or USUAL)
     check_asked(wanted)
-    scenarios = load_all(configs, settings, plugins)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
     for one in scenarios:
         if set(one.cases) & set(selection.cases or one.cases):
@@ -105,6 +108,7 @@ def status(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
 ) -> None:
     """Tell which results are there, what is out of date and why, and how the runs ended."""
@@ -112,7 +116,7 @@ def status(
     from debrisest.results.overview import overview
     from debrisest.runner.plan import plan
 
-    scenarios = load_all(configs, settings, plugins)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
     for scenario in scenarios:
         results = find_results(out / scenario.name)

@@ -25,6 +25,7 @@ from debrisest.cli.options import (
     Quiet,
     Runs,
     Settings,
+    Variant,
 )
 from debrisest.cli.show import show_tables
 
@@ -45,13 +46,14 @@ def _command(last_stage: str, help: str) -> Callable[..., None]:
         case: CaseNames = None,
         estimator: EstimatorNames = None,
         settings: Settings = None,
+        variant: Variant = None,
         plugins: Plugins = None,
         dry_run: DryRun = False,
         force: Force = False,
         cluster: Cluster = None,
         quiet: Quiet = False,
     ) -> None:
-        scenarios = load_all(configs, settings, plugins)
+        scenarios = load_all(configs, settings, plugins, variant)
         selection = select(scenarios, runs, case, estimator, last_stage, force)
         exit_if(bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
 
@@ -72,6 +74,7 @@ def sweep(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
     dry_run: DryRun = False,
     force: Force = False,
@@ -80,7 +83,7 @@ def sweep(
     check: Check = False,
 ) -> None:
     """Do everything for all cases, then write and print the tables."""
-    scenarios = load_all(configs, settings, plugins)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator, force=force)
     failed = bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
     if not dry_run:
@@ -88,6 +91,7 @@ def sweep(
         if sys.stderr.isatty() and not quiet:
             of_runs = ["--runs", str(runs)] if runs else []
             changed = [text for setting in settings or () for text in ("--set", setting)]
+            changed += ["--variant", variant] if variant else []
             asked = [*map(str, configs), "--out", str(out), *of_runs, *changed]
             print(f"to look at it: {shlex.join(['debrisest', 'report', *asked])}", file=sys.stderr)
         exit_if(wrong or failed)

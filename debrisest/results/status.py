@@ -79,13 +79,13 @@ def _require_unchanged(results: Results, wanted: Iterable[Wanted]) -> None:
 
 def _outdated(wanted: Wanted, attributes: dict[str, Any]) -> str:
     if attributes.get("stage_key") != wanted.key:
-        return _difference(json.loads(attributes["inputs"]), wanted.inputs)
+        return difference(json.loads(attributes["inputs"]), wanted.inputs)
     if attributes["runs"] < wanted.runs:
         return f"holds {attributes['runs']} runs, {wanted.runs} are wanted"
     return ""
 
 
-def _difference(before: dict[str, Any], now: dict[str, Any]) -> str:
+def difference(before: dict[str, Any], now: dict[str, Any]) -> str:
     """Return the first keys whose values differ, with both values."""
     was, now_is = flat(before), flat(now)
     changed = [key for key in was | now_is if was.get(key) != now_is.get(key)]

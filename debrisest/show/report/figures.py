@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from debrisest.results.status import Wanted
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.draw import draw, sources
+from debrisest.show.plots.kinds import FIGURES
 from debrisest.show.plots.style import style
 
 _DPI, _COLOURS = 90, 64
@@ -25,10 +26,11 @@ class Picture(NamedTuple):
 
 
 def pictures(scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]) -> Iterator[Picture]:
-    """Yield every figure of the first case of each kind and estimator."""
+    """Yield every kind of figure of every estimator, each of the first case that has it."""
     seen = set()
     for kind, source in sources(scenario, out, wanted):
-        of = (kind, *source.names[-1:])
+        alone = FIGURES[kind].of_simulation or FIGURES[kind].of_estimators
+        of = (kind, *([] if alone else source.names[-1:]))
         if of in seen:
             continue
         seen.add(of)

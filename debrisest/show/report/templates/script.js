@@ -32,7 +32,8 @@
     var body = table.tBodies[0];
     Array.from(body.rows).sort(function (one, other) {
       var a = parseFloat(text(one)), b = parseFloat(text(other));
-      var order = isNaN(a) ? (isNaN(b) ? text(one).localeCompare(text(other)) : 1) : (isNaN(b) ? -1 : a - b);
+      if (isNaN(a) !== isNaN(b)) { return isNaN(a) ? 1 : -1; }
+      var order = isNaN(a) ? text(one).localeCompare(text(other)) : a - b;
       return down ? -order : order;
     }).forEach(function (row) { body.appendChild(row); });
   }
