@@ -94,11 +94,12 @@ def plot(
     check_asked(wanted)
     scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
-    for one in scenarios:
-        if set(one.cases) & set(selection.cases or one.cases):
-            for path in draw_all(one, out, plan(one, out, selection), wanted):
-                if not quiet:
-                    print(path, flush=True)
+    asked = [one for one in scenarios if set(one.cases) & set(selection.cases or one.cases)]
+    drawn = [
+        path for one in asked for path in draw_all(one, out, plan(one, out, selection), wanted)
+    ]
+    if not quiet:
+        print(*drawn, sep="\n")
 
 
 def status(
