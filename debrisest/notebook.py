@@ -21,6 +21,7 @@ from debrisest.measured.arrays import require_fitting
 from debrisest.plugins.load import load_plugins, read_plugins
 from debrisest.runner.plan import Selection, check_selection, plan
 from debrisest.runner.sweep import Machine, bring_up_to_date
+from debrisest.scenario.described import described
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.scenario.schema import ScenarioFile, scenario_model
 from debrisest.shipped import scenario_path
@@ -113,8 +114,7 @@ def estimate(
 def schema(plugins: Iterable[str | Path] = ()) -> dict[str, Any]:
     """Return the JSON schema of scenario files."""
     load_plugins(read_plugins(map(Path, plugins)))
-    found: dict[str, Any] = scenario_model(ScenarioFile).model_json_schema()
-    return found
+    return described(scenario_model(ScenarioFile).model_json_schema())
 
 
 def _plain(value: Any) -> Any:

@@ -9,6 +9,8 @@ from debrisest.scenario.mistakes import allowed_names
 _PACKAGE = Path(__file__).parent
 _FOLDERS = (_PACKAGE / "configs", _PACKAGE.parent / "configs")
 """Where they lie in an installed package, and in a checkout."""
+SCHEMA = "schema.json"
+"""What the first line of every shipped scenario tells editors to look for beside it."""
 STARTER = "first_steps"
 """The scenario to start from, in which every key is explained."""
 

@@ -9,7 +9,17 @@ from typing import Annotated
 import typer
 
 from debrisest import __version__
-from debrisest.cli import estimate, estimates, measured, rerun, scenarios, show, stages
+from debrisest.cli import (
+    compare,
+    estimate,
+    estimates,
+    measured,
+    report,
+    rerun,
+    scenarios,
+    show,
+    stages,
+)
 from debrisest.cli.exits import Commands
 
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -24,6 +34,8 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "plot": show.plot,
     "status": show.status,
     "rerun": rerun.rerun,
+    "report": report.report,
+    "compare": compare.compare,
     "estimate": estimate.estimate,
     "estimates": estimates.estimates,
     "validate": scenarios.validate,

@@ -17,6 +17,7 @@ from debrisest.cli.options import (
     Out,
     Plugins,
     Settings,
+    Variant,
 )
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def estimates(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
     form: Form = EstimateFormat.RICH,
 ) -> None:
@@ -57,7 +59,7 @@ def estimates(
     from debrisest.show.estimate_tables import render_estimates
     from debrisest.show.estimates import estimates_at, export
 
-    scenarios = load_all(configs, settings, plugins)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, None, case, estimator, "filter")
     current = [(one.name, current_estimates(one, out, selection)) for one in scenarios]
     time = float("inf") if at is None else at

@@ -10,7 +10,10 @@ if TYPE_CHECKING:
 
 
 def load_all(
-    configs: Sequence[Path], settings: Sequence[str] | None, plugins: Sequence[Path] | None
+    configs: Sequence[Path],
+    settings: Sequence[str] | None,
+    plugins: Sequence[Path] | None,
+    variant: str | None = None,
 ) -> list["LoadedScenario"]:
     """Return all scenarios, or raise UserError with the problems of all of them at once."""
     from debrisest.errors import UserError
@@ -19,6 +22,8 @@ def load_all(
     from debrisest.shipped import scenario_path
     from debrisest.show.tables.published import check_published
 
+    if variant is not None:
+        _check_variant(variant)
     own_parts = read_plugins(plugins or ())
     load_plugins(own_parts)
     scenarios, problems = [], []
@@ -36,7 +41,20 @@ def load_all(
     ]
     if problems:
         raise UserError(problems)
-    return scenarios
+    return [one.called(variant) for one in scenarios] if variant else scenarios
+
+
+def _check_variant(name: str) -> None:
+    """Raise UserError for a name that no folder should have."""
+    from pydantic import TypeAdapter, ValidationError
+
+    from debrisest.errors import UserError
+    from debrisest.scenario.names import CaseName
+
+    try:
+        TypeAdapter(CaseName).validate_python(name)
+    except ValidationError as error:
+        raise UserError(f"--variant {name}: {error.errors()[0]['ctx']['error']}") from None
 
 
 def select(

@@ -31,6 +31,9 @@ EstimatorNames = Annotated[
 Settings = Annotated[
     list[str] | None, Option("--set", help="key.path=value, laid on every case (repeatable).")
 ]
+Variant = Annotated[
+    str | None, Option("--variant", help="Keep these results apart, in DIR/SCENARIO@NAME.")
+]
 Plugins = Annotated[
     list[Path] | None,
     Option("--plugin", metavar="FILE.py", help="Parts of your own (repeatable)."),

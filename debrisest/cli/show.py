@@ -2,9 +2,12 @@
 
 import sys
 from collections.abc import Sequence
+from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from typer import Option
 
 from debrisest.cli.estimates import estimates_of
 from debrisest.cli.exits import exit_if
@@ -22,7 +25,25 @@ from debrisest.cli.options import (
     Runs,
     Settings,
     Unprinted,
+    Variant,
 )
+
+
+class FigureFormat(StrEnum):
+    """How figures are written."""
+
+    PNG = "png"
+    SVG = "svg"
+    PDF = "pdf"
+
+
+Figures = Annotated[list[str] | None, Option("--figure", help="Only this figure (repeatable).")]
+OneRun = Annotated[
+    int | None, Option("--run", min=0, help="This run, in figures of one (default: the first).")
+]
+FigureFormats = Annotated[
+    list[FigureFormat] | None, Option("--format", help="Format (repeatable; default: png, svg).")
+]
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -38,13 +59,14 @@ def table(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
     form: Form = Format.RICH,
     check: Check = False,
     quiet: Unprinted = False,
 ) -> None:
     """Write and print the tables of the results that are up to date."""
-    scenarios = load_all(configs, settings, plugins)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
     exit_if(show_tables(scenarios, out, selection, None if quiet else form, check))
 
@@ -56,17 +78,26 @@ def plot(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
+    figure: Figures = None,
+    run: OneRun = None,
+    form: FigureFormats = None,
     quiet: Unprinted = False,
 ) -> None:
-    """Draw the figures of the results that are up to date, as PNG and SVG."""
+    """Draw the figures of the results that are up to date, by default as PNG and SVG."""
     from debrisest.runner.plan import plan
-    from debrisest.show.plots.draw import draw_all
+    from debrisest.show.plots.draw import Asked, check_asked, draw_all
+    from debrisest.show.plots.files import USUAL
 
-    scenarios = load_all(configs, settings, plugins)
+    wanted = Asked(figure or (), run, form or USUAL)
+    check_asked(wanted)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
     asked = [one for one in scenarios if set(one.cases) & set(selection.cases or one.cases)]
-    drawn = [path for one in asked for path in draw_all(one, out, plan(one, out, selection))]
+    drawn = [
+        path for one in asked for path in draw_all(one, out, plan(one, out, selection), wanted)
+    ]
     if not quiet:
         print(*drawn, sep="\n")
 
@@ -78,6 +109,7 @@ def status(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
 ) -> None:
     """Tell which results are there, what is out of date and why, and how the runs ended."""
@@ -85,7 +117,7 @@ def status(
     from debrisest.results.overview import overview
     from debrisest.runner.plan import plan
 
-    scenarios = load_all(configs, settings, plugins)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
     for scenario in scenarios:
         results = find_results(out / scenario.name)

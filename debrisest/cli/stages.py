@@ -1,6 +1,7 @@
 """The commands that bring results up to date: simulate, recover, filter, sweep."""
 
 import os
+import shlex
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -24,6 +25,7 @@ from debrisest.cli.options import (
     Quiet,
     Runs,
     Settings,
+    Variant,
 )
 from debrisest.cli.show import show_tables
 
@@ -44,13 +46,14 @@ def _command(last_stage: str, help: str) -> Callable[..., None]:
         case: CaseNames = None,
         estimator: EstimatorNames = None,
         settings: Settings = None,
+        variant: Variant = None,
         plugins: Plugins = None,
         dry_run: DryRun = False,
         force: Force = False,
         cluster: Cluster = None,
         quiet: Quiet = False,
     ) -> None:
-        scenarios = load_all(configs, settings, plugins)
+        scenarios = load_all(configs, settings, plugins, variant)
         selection = select(scenarios, runs, case, estimator, last_stage, force)
         exit_if(bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
 
@@ -71,6 +74,7 @@ def sweep(
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
+    variant: Variant = None,
     plugins: Plugins = None,
     dry_run: DryRun = False,
     force: Force = False,
@@ -79,11 +83,18 @@ def sweep(
     check: Check = False,
 ) -> None:
     """Do everything for all cases, then write and print the tables."""
-    scenarios = load_all(configs, settings, plugins)
+    scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator, force=force)
     failed = bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
     if not dry_run:
-        exit_if(show_tables(scenarios, out, selection, Format.RICH, check) or failed)
+        wrong = show_tables(scenarios, out, selection, Format.RICH, check)
+        if sys.stderr.isatty() and not quiet:
+            of_runs = ["--runs", str(runs)] if runs else []
+            changed = [text for setting in settings or () for text in ("--set", setting)]
+            changed += ["--variant", variant] if variant else []
+            asked = [*map(str, configs), "--out", str(out), *of_runs, *changed]
+            print(f"to look at it: {shlex.join(['debrisest', 'report', *asked])}", file=sys.stderr)
+        exit_if(wrong or failed)
 
 
 def _machine(jobs: int | None, cluster: str | None, quiet: bool) -> "Machine":

@@ -8,6 +8,9 @@ from debrisest.results.address import Address
 from debrisest.results.chunk import Chunk
 from debrisest.results.results import Results
 
+_MOST_TOLD = 3
+"""Files that are left out, beyond which only their number is told."""
+
 
 def open_results(folder: Path | str) -> Results:
     """Return the results of a scenario from its folder alone, such as ``results/first_steps``.
@@ -17,11 +20,16 @@ def open_results(folder: Path | str) -> Results:
     """
     results = find_results(Path(folder))
     if not results.chunks:
-        told = [f"{folder}: no results of a scenario there", *results.left_out]
+        told = [f"{folder}: no results of a scenario there", *_first_few(results.left_out)]
         inner = sorted({path.parent.parent.name for path in Path(folder).glob("*/*/*.h5")})
         hint = [f"open one of the folders in it: {', '.join(inner)}"] * bool(inner)
         raise UserError("; ".join([*told, *hint]))
     return results
+
+
+def _first_few(sentences: list[str]) -> list[str]:
+    more = len(sentences) - _MOST_TOLD
+    return [*sentences[:_MOST_TOLD], *[f"and {more} more files like these"] * (more > 0)]
 
 
 def find_results(folder: Path) -> Results:

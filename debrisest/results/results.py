@@ -101,15 +101,18 @@ class Results:
         """Return the runs that gave no result, by default of all cases and estimators."""
         return failures_of(self._of_run(case, estimator))
 
-    def first_good_run(self, case: str, estimator: str = "") -> int | None:
-        """Return the number of the first run of which no stage failed, if there is one."""
+    def good_runs(self, case: str, estimator: str = "") -> set[int]:
+        """Return the numbers of the runs of which no stage failed."""
         there = {
             chunk.address.first_run + index
             for chunk in self._of_run(case, estimator)
             for index in range(chunk.runs)
         }
-        failed = {failure.run for failure in self.failures(case, estimator)}
-        return min(there - failed, default=None)
+        return there - {failure.run for failure in self.failures(case, estimator)}
+
+    def first_good_run(self, case: str, estimator: str = "") -> int | None:
+        """Return the number of the first run of which no stage failed, if there is one."""
+        return min(self.good_runs(case, estimator), default=None)
 
     def one_run(self, case: str, estimator: str, run: int) -> Data:
         """Return a run's datasets of all stages without their run axis; of one name, the latest."""

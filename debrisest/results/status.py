@@ -79,15 +79,15 @@ def _require_unchanged(results: Results, wanted: Iterable[Wanted]) -> None:
 
 def _outdated(wanted: Wanted, attributes: dict[str, Any]) -> str:
     if attributes.get("stage_key") != wanted.key:
-        return _difference(json.loads(attributes["inputs"]), wanted.inputs)
+        return difference(json.loads(attributes["inputs"]), wanted.inputs)
     if attributes["runs"] < wanted.runs:
         return f"holds {attributes['runs']} runs, {wanted.runs} are wanted"
     return ""
 
 
-def _difference(before: dict[str, Any], now: dict[str, Any]) -> str:
+def difference(before: dict[str, Any], now: dict[str, Any]) -> str:
     """Return the first keys whose values differ, with both values."""
-    was, now_is = _flat(before), _flat(now)
+    was, now_is = flat(before), flat(now)
     changed = [key for key in was | now_is if was.get(key) != now_is.get(key)]
     if not changed and list(was) != list(now_is):
         return "the order of its parts changed"
@@ -102,7 +102,8 @@ def _change(key: str, was: Any, now_is: Any) -> str:
     return f"{part}: plug-in {name} changed" if plugin else f"{key} was {was}, is {now_is}"
 
 
-def _flat(value: Any, prefix: str = "") -> dict[str, Any]:
+def flat(value: Any, prefix: str = "") -> dict[str, Any]:
+    """Return the leaves of nested plain data by their key paths."""
     if isinstance(value, dict):
         items = value.items()
     elif isinstance(value, list):
@@ -112,5 +113,5 @@ def _flat(value: Any, prefix: str = "") -> dict[str, Any]:
     return {
         path: leaf
         for key, item in items
-        for path, leaf in _flat(item, f"{prefix}.{key}" if prefix else str(key)).items()
+        for path, leaf in flat(item, f"{prefix}.{key}" if prefix else str(key)).items()
     }

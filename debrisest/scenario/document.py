@@ -135,9 +135,7 @@ def merge_values(base: Any, over: Any, required: Required = lambda kind: ()) -> 
         return over
     if "kind" in over and over["kind"] != base.get("kind", over["kind"]):
         return {key: base[key] for key in required(str(over["kind"])) if key in base} | over
-    return base | {
-        key: merge_values(base.get(key), value, required) for key, value in over.items()
-    }
+    return base | {key: merge_values(base.get(key), value, required) for key, value in over.items()}
 
 
 @dataclass

@@ -3,6 +3,7 @@
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import reduce
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -42,11 +43,21 @@ class LoadedScenario(NamedTuple):
 
     path: Path
     cases: dict[str, Case]
+    variant: str = ""
 
     @property
     def name(self) -> str:
-        """Return the scenario's name, the stem of its file."""
-        return self.path.stem
+        """Return the scenario's name, the stem of its file, and that of its variant."""
+        return f"{self.path.stem}@{self.variant}" if self.variant else self.path.stem
+
+    def called(self, variant: str) -> "LoadedScenario":
+        """Return the same with results of its own, beside those of other variants."""
+        found = self._replace(variant=variant)
+        cases = {
+            name: replace(case, scenario_name=found.name).known_as(case.scenario)
+            for name, case in self.cases.items()
+        }
+        return found._replace(cases=cases)
 
     @property
     def common(self) -> Scenario:

@@ -22,26 +22,36 @@ from debrisest.roles import (
     StartPart,
     Window,
 )
+from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.names import CaseName, Line, PartName, TableName
 from debrisest.scenario.window import WindowText, window_of
 from debrisest.vocabulary import VOCABULARY, possible_units
 
 
 def _known_quantity(name: str) -> str:
-    if not VOCABULARY.get(name) or not VOCABULARY[name].table_unit:
-        allowed = ", ".join(name for name, entry in VOCABULARY.items() if entry.table_unit)
-        raise ValueError(f"no table can show {name!r}; allowed: {allowed}")
+    if name not in (shown := _quantities()):
+        raise ValueError(f"no table can show {name!r}; {allowed_names(name, shown)}")
     return name
+
+
+def _quantities() -> list[str]:
+    return [name for name, entry in VOCABULARY.items() if entry.table_unit]
 
 
 def _known_statistic(name: str) -> str:
     if name not in STATISTICS:
-        raise ValueError(f"unknown statistic {name!r}; allowed: {', '.join(STATISTICS)}")
+        raise ValueError(f"unknown statistic {name!r}; {allowed_names(name, STATISTICS)}")
     return name
 
 
-QuantityName = Annotated[str, AfterValidator(_known_quantity)]
-StatisticName = Annotated[str, AfterValidator(_known_statistic)]
+QuantityName = Annotated[
+    str,
+    AfterValidator(_known_quantity),
+    Field(json_schema_extra=lambda schema: schema.update(enum=_quantities())),
+]
+StatisticName = Annotated[
+    str, AfterValidator(_known_statistic), Field(json_schema_extra={"enum": [*STATISTICS]})
+]
 
 
 class Divergence(Keys):

@@ -4,12 +4,12 @@ from collections.abc import Callable, Sequence
 
 import pandas as pd
 from rich.box import SIMPLE_HEAD
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from debrisest.show.estimates import OF_ROW, Estimate
 from debrisest.show.rounding import rounded
+from debrisest.show.terminal import console
 
 
 def render_estimates(found: Sequence[tuple[str, Estimate]], form: str) -> str:
@@ -43,14 +43,14 @@ def _json(found: Sequence[tuple[str, Estimate]]) -> str:
 
 
 def _terminal(found: Sequence[tuple[str, Estimate]]) -> str:
-    console = Console(width=110)
-    with console.capture() as capture:
+    terminal = console()
+    with terminal.capture() as capture:
         for name, one in found:
             where = f"{name} {one.case}, {one.estimator}, run {one.run}, at {one.time:g} s"
-            console.print(f"\n[bold]{escape(f'Estimates: {where}')}[/]", soft_wrap=True)
-            console.print(escape(one.status), soft_wrap=True)
+            terminal.print(f"\n[bold]{escape(f'Estimates: {where}')}[/]", soft_wrap=True)
+            terminal.print(escape(one.status), soft_wrap=True)
             if len(one.rows):
-                console.print(_table(one.rows))
+                terminal.print(_table(one.rows))
     return capture.get()
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 from debrisest.arrays import Array, BoolArray
 from debrisest.show.plots.style import INK, SHADE
@@ -61,6 +61,14 @@ def quaternion_axis(axis: Axes, component: int) -> None:
     axis.set_ylim(-1.12, 1.12)
     axis.set_yticks([-1, 0, 1])
     axis.set_ylabel(f"$q_{component}$")
+
+
+def log_axis(axis: Axes) -> None:
+    """Make the axis logarithmic, with labels at 1, 2 and 5 of every decade."""
+    axis.set_yscale("log")
+    axis.yaxis.set_minor_locator(LogLocator(subs=(2, 5)))
+    axis.yaxis.set_major_formatter("{x:g}")
+    axis.yaxis.set_minor_formatter("{x:g}")
 
 
 def gaps(times: Array, missing: BoolArray) -> list[tuple[float, float]]:

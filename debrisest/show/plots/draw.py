@@ -1,109 +1,60 @@
-"""The figures there are, and how all that a scenario's results allow are written.
+"""The figures that a scenario's results allow, and their files."""
 
-A new figure is a file with a function from data to a figure, and a line in ``FIGURES``.
-"""
-
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
-from debrisest.arrays import Data
 from debrisest.errors import UserError
 from debrisest.results.assessed import Assessed, assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
-from debrisest.show.plots import (
-    covariance_trace,
-    error_over_time,
-    histograms,
-    motion,
-    nees_over_time,
-    orbit_error,
-    pixel_paths,
-    pose_errors,
-    rates,
-    raw_quaternion,
-    recovered_quaternion,
-    relative_trajectory,
-    shape,
-    sign_hypotheses,
-    torques,
+from debrisest.scenario.mistakes import allowed_names
+from debrisest.show.plots.beside import beside
+from debrisest.show.plots.files import USUAL, write
+from debrisest.show.plots.gather import (
+    Source,
+    all_runs,
+    of_estimators,
+    simulations,
+    single_runs,
 )
-from debrisest.show.plots.files import write
-from debrisest.show.plots.gather import Source, all_runs, simulations, single_runs
+from debrisest.show.plots.kinds import FIGURES, Kind
+from debrisest.show.plots.tumble import tumbles, write_tumble
 
 
-class Kind(NamedTuple):
-    """A figure: how it is drawn, from which datasets, and whether of one run or of all runs.
+class Asked(NamedTuple):
+    """Which figures are wanted, of which run, in which formats."""
 
-    What it draws of further datasets, such as a truth, is up to the figure. One of all runs is
-    given those in ``also`` if there are any, and may be drawn of each case by itself. One of the
-    simulation is drawn once for each case, whatever the estimators.
-    """
-
-    draw: Callable[[Data, str], Figure]
-    needs: tuple[str, ...]
-    of_all_runs: bool = False
-    of_each_case: bool = False
-    of_simulation: bool = False
-    also: tuple[str, ...] = ()
+    figures: Sequence[str] = ()
+    """By name; empty for all."""
+    run: int | None = None
+    """Of figures of one run; by default the first that did not fail."""
+    formats: Sequence[str] = USUAL
 
 
-FIGURES: dict[str, Kind] = {
-    "raw_quaternion": Kind(raw_quaternion.raw_quaternion, ("raw_q_if", "piece")),
-    "recovered_quaternion": Kind(
-        recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
-    ),
-    "first_hypotheses": Kind(sign_hypotheses.first_hypotheses, sign_hypotheses.DATASETS),
-    "hypothesis_scores": Kind(sign_hypotheses.hypothesis_scores, sign_hypotheses.DATASETS),
-    "next_hypotheses": Kind(sign_hypotheses.next_hypotheses, sign_hypotheses.DATASETS),
-    "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma", "moments_b")),
-    "motion": Kind(motion.motion, motion.DATASETS),
-    "error_over_time": Kind(
-        error_over_time.error_over_time, error_over_time.QUANTITIES, of_all_runs=True
-    ),
-    "pose_errors": Kind(pose_errors.pose_errors, pose_errors.DATASETS[:1]),
-    "shape": Kind(shape.shape, shape.DATASETS),
-    "relative_trajectory": Kind(
-        relative_trajectory.relative_trajectory, relative_trajectory.DATASETS
-    ),
-    "orbit_error": Kind(orbit_error.orbit_error, orbit_error.DATASETS),
-    "covariance_trace": Kind(covariance_trace.covariance_trace, ("covariance_trace", "section")),
-    "pixel_paths": Kind(
-        pixel_paths.pixel_paths,
-        ("true_pixel", "section", "image_half_size", "observer"),
-        of_simulation=True,
-    ),
-    "torques": Kind(torques.torques, ("torque", "section", "observer"), of_simulation=True),
-    "histograms": Kind(
-        histograms.histograms,
-        histograms.QUANTITIES[:1],
-        of_all_runs=True,
-        of_each_case=True,
-        also=histograms.QUANTITIES[1:],
-    ),
-    "nees_over_time": Kind(
-        nees_over_time.nees_over_time,
-        ("nees",),
-        of_all_runs=True,
-        of_each_case=True,
-        also=("nees_dof",),
-    ),
-}
+ALL = Asked()
+FILM = "tumble"
+"""An animation, which takes a while: it is drawn only where it is asked for."""
 
 
-def draw_all(scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]) -> Iterator[Path]:
+def draw_all(
+    scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted], asked: Asked = ALL
+) -> Iterator[Path]:
     """Draw what the results that are up to date allow; yield each file once it is written."""
     folder = out / scenario.name / "plots"
     drawn = False
-    for name, source in _sources(scenario, out, wanted):
-        figure = FIGURES[name].draw(source.data, source.context)
-        for path in write(figure, folder, "-".join((name, *source.names))):
+    for name, source in sources(scenario, out, wanted, asked):
+        figure = draw(name, source)
+        for path in write(figure, folder, "-".join((name, *source.names)), asked.formats):
             drawn = True
             yield path
+    if FILM in asked.figures:
+        for source in tumbles(scenario, up_to_date(find_results(out / scenario.name), wanted)):
+            drawn = True
+            yield write_tumble(source, folder)
     if not drawn:
         raise UserError(
             f"{scenario.name}: no results that are up to date to draw; "
@@ -111,22 +62,46 @@ def draw_all(scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]) -> I
         )
 
 
-def _sources(
-    scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]
+def draw(name: str, source: Source) -> Figure:
+    """Return a figure by its name."""
+    kind = FIGURES[name]
+    if kind.beside is not None:
+        return kind.beside(source.data, source.context, source.beside)
+    return kind.draw(source.data, source.context)
+
+
+def check_asked(asked: Asked) -> None:
+    """Raise UserError for figures that do not exist."""
+    problems = [
+        f"--figure {name}: no such figure; {allowed_names(name, [*FIGURES, FILM])}"
+        for name in asked.figures
+        if name not in (*FIGURES, FILM)
+    ]
+    if problems:
+        raise UserError(problems)
+
+
+def sources(
+    scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted], asked: Asked = ALL
 ) -> Iterator[tuple[str, Source]]:
     """Return every figure that can be drawn, with its data."""
     there = find_results(out / scenario.name)
     results = up_to_date(there, wanted)
     errors = assessed(up_to_date(there, wanted, complete=True))
-    of_one_run = {n: k for n, k in FIGURES.items() if not (k.of_all_runs or k.of_simulation)}
-    of_simulation = {name: kind for name, kind in FIGURES.items() if kind.of_simulation}
-    for source in single_runs(scenario, results, errors):
-        yield from ((name, source) for name in _suiting(of_one_run, source))
-    for source in simulations(scenario, results):
-        yield from ((name, source) for name in _suiting(of_simulation, source))
-    for name, kind in FIGURES.items():
+    chosen = {n: k for n, k in FIGURES.items() if not asked.figures or n in asked.figures}
+    of_one_run = {name: kind for name, kind in chosen.items() if kind.of_one_run}
+    of_simulation = {name: kind for name, kind in chosen.items() if kind.of_simulation}
+    if of_one_run:
+        for source in single_runs(scenario, results, errors, asked.run):
+            yield from ((name, source) for name in _suiting(of_one_run, source))
+    if of_simulation:
+        for source in simulations(scenario, results, asked.run):
+            yield from ((name, source) for name in _suiting(of_simulation, source))
+    for name, kind in chosen.items():
         if kind.of_all_runs:
             yield from ((name, source) for source in _of_all_runs(scenario, errors, kind))
+        if kind.of_estimators:
+            yield from ((name, source) for source in of_estimators(scenario, errors, kind.needs))
 
 
 def _suiting(figures: dict[str, Kind], source: Source) -> list[str]:
@@ -135,12 +110,15 @@ def _suiting(figures: dict[str, Kind], source: Source) -> list[str]:
 
 
 def _of_all_runs(scenario: LoadedScenario, results: Assessed, kind: Kind) -> Iterator[Source]:
-    """Return all runs of an estimator: of all cases, or of each case by itself."""
-    if not kind.of_each_case:
+    """Return all runs of an estimator: of each case by itself, or of those that have a mean."""
+    if scenario.common.tables.means and not kind.of_each_case:
         yield from all_runs(scenario, results, kind.needs)
         return
     for (case, estimator), result in results.items():
         quantities = [*kind.needs, *(name for name in kind.also if name in result.errors)]
         for source in all_runs(scenario, {(case, estimator): result}, quantities):
             context = source.context.replace("1 case,", f"case {case},", 1)
-            yield source._replace(names=(case, estimator), context=context)
+            found = source._replace(names=(case, estimator), context=context)
+            if kind.beside is not None:
+                found = found._replace(beside=beside(scenario, results, case, estimator))
+            yield found

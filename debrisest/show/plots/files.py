@@ -1,6 +1,6 @@
-"""Figures on disk, as PNG and SVG."""
+"""Figures on disk, as PNG, SVG or PDF."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,18 +13,23 @@ from debrisest.show.plots.style import style
 FORMATS: dict[str, dict[str, Any]] = {
     "png": {"dpi": 150, "metadata": {"Software": None}},
     "svg": {"dpi": 300, "metadata": {"Date": None}},
+    "pdf": {"dpi": 300, "metadata": {"CreationDate": None}},
 }
-"""In an SVG only what is dense has a resolution."""
+"""In an SVG or a PDF only what is dense has a resolution."""
+USUAL = ("png", "svg")
 MOST_MARKERS, MOST_VERTICES = 300, 2000
 """What has more of them is drawn as an image, which keeps an SVG below about 1 MB."""
 
 _NO_MARKER = (None, "None", "none", " ", "")
 
 
-def write(figure: Figure, folder: Path, name: str) -> Iterator[Path]:
-    """Write a figure in every format, each in one step; yield the paths."""
+def write(
+    figure: Figure, folder: Path, name: str, formats: Sequence[str] = USUAL
+) -> Iterator[Path]:
+    """Write a figure in some FORMATS, each in one step; yield the paths."""
     _rasterise_dense(figure)
-    for form, options in FORMATS.items():
+    for form in formats:
+        options = FORMATS[form]
         path = folder / f"{name}.{form}"
         with replacing(path) as temporary, style():
             figure.savefig(temporary, format=form, **options)

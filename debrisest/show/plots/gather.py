@@ -11,6 +11,20 @@ from debrisest.results.results import Results
 from debrisest.scenario.load import LoadedScenario
 
 
+class Beside(NamedTuple):
+    """What the tables have beside the errors of a figure, by quantity."""
+
+    units: dict[str, str] = {}
+    bound: Data = {}
+    """Errors (run, time) of the efficient estimator, SI."""
+    published: dict[str, float] = {}
+    """Published medians of the runs' mean errors over the settled time, in the tables' unit."""
+
+
+ALONE = Beside()
+_NONE = np.zeros(0)
+
+
 class Source(NamedTuple):
     """What a figure is drawn from, in names, in words and in data."""
 
@@ -18,29 +32,45 @@ class Source(NamedTuple):
     """What tells the figure's file from others of its kind: case and estimator, or one of them."""
     context: str
     data: Data
+    beside: Beside = ALONE
 
 
-def single_runs(scenario: LoadedScenario, results: Results, errors: Assessed) -> Iterator[Source]:
-    """Return the first run that did not fail, of every case and estimator that has one."""
+def single_runs(
+    scenario: LoadedScenario, results: Results, errors: Assessed, run_asked: int | None = None
+) -> Iterator[Source]:
+    """Return a run of every case and estimator that has it: by default the first that did well."""
     for case in results.cases:
         for estimator in results.estimators(case):
-            run = results.first_good_run(case, estimator)
+            run = _run(results, case, estimator, run_asked)
             if run is not None:
                 context = f"{scenario.name}, case {case}, estimator {estimator}, run {run}"
                 result = errors.get((case, estimator))
                 if result is not None and result.diverged(scenario.common.tables.diverged)[run]:
                     context += " (its filter diverged)"
                 data = results.one_run(case, estimator, run)
-                yield Source((case, estimator), context, data)
+                yield Source((case, estimator, *_told(run_asked)), context, data)
 
 
-def simulations(scenario: LoadedScenario, results: Results) -> Iterator[Source]:
-    """Return what was simulated of the first run that did not fail, of every case."""
+def simulations(
+    scenario: LoadedScenario, results: Results, run_asked: int | None = None
+) -> Iterator[Source]:
+    """Return what was simulated of a run, of every case that has it."""
     for case in results.cases:
-        run = results.first_good_run(case)
+        run = _run(results, case, "", run_asked)
         if run is not None:
             context = f"{scenario.name}, case {case}, run {run}"
-            yield Source((case,), context, results.one_run(case, "", run))
+            yield Source((case, *_told(run_asked)), context, results.one_run(case, "", run))
+
+
+def _run(results: Results, case: str, estimator: str, asked: int | None) -> int | None:
+    """Return the run that is asked for, if there is a result of it; by default the first one."""
+    if asked is None:
+        return results.first_good_run(case, estimator)
+    return asked if asked in results.good_runs(case, estimator) else None
+
+
+def _told(run_asked: int | None) -> tuple[str, ...]:
+    return () if run_asked is None else (f"run_{run_asked}",)
 
 
 def all_runs(
@@ -61,6 +91,25 @@ def all_runs(
         source = _pooled(scenario, estimator, chosen or list(mine.values()), quantities)
         if source is not None:
             yield source
+
+
+def of_estimators(
+    scenario: LoadedScenario, results: Assessed, quantities: Sequence[str]
+) -> Iterator[Source]:
+    """Return the errors of all estimators of a case that has several, by ``quantity/estimator``.
+
+    Runs that diverged, and estimators that lost all of them, are left out.
+    """
+    for case in dict.fromkeys(case for case, _ in results):
+        data: Data = {}
+        for (of, estimator), result in results.items():
+            good = result.good & ~result.diverged(scenario.common.tables.diverged)
+            for name in quantities if of == case and good.any() else ():
+                error = result.errors.get(name, _NONE)
+                if error.shape[1:] == result.times.shape:
+                    data |= {f"{name}/{estimator}": error[good], "time_s": result.times}
+        if len({name.partition("/")[2] for name in data} - {""}) > 1:
+            yield Source((case,), f"{scenario.name}, case {case}", data)
 
 
 def _pooled(

@@ -7,16 +7,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import LogLocator
 
 from debrisest.arrays import Array, BoolArray, Data
 from debrisest.assessment.consistency import interval
-from debrisest.show.plots.axes import heading, legend_below, time_axis
-from debrisest.show.plots.style import BLUE, GREY, INK, VERMILION, WIDTH, styled
+from debrisest.show.plots.axes import heading, legend_below, log_axis, time_axis
+from debrisest.show.plots.style import BLUE, GREY, INK, SKY, VERMILION, WIDTH, styled
 
 _MEAN: dict[str, Any] = {"color": BLUE, "marker": "o", "markersize": 3.2, "linewidth": 1.4}
 _MEDIAN: dict[str, Any] = {"color": VERMILION, "marker": "s", "markersize": 3.0, "linewidth": 1.0}
 _MOST_MARKERS = 40
+_FEW = 8
+"""Epochs with a covariance up to which every run is drawn, and the interval as a bar."""
+_RUN: dict[str, Any] = {"color": SKY, "marker": ".", "markersize": 4.5, "linestyle": "none"}
+_RUN_HANDLE = Line2D([], [], label="single runs", **_RUN)
 
 
 @styled
@@ -31,28 +34,35 @@ def nees_over_time(data: Data, context: str) -> Figure:
     shown: BoolArray = np.asarray(known.any(axis=0))
     figure = Figure(figsize=(WIDTH, 3.6))
     axis = figure.subplots()
-    _log_axis(axis)
+    log_axis(axis)
     mean, median = _over_runs(nees[:, shown], known[:, shown])
     low, high = _interval(data, known, shown)
-    axis.fill_between(times[shown], low, high, color=GREY, alpha=0.25, linewidth=0)
+    if few := int(shown.sum()) <= _FEW:
+        _single_epochs(axis, times, shown, nees, low, high)
+    else:
+        axis.fill_between(times[shown], low, high, color=GREY, alpha=0.25, linewidth=0)
     axis.axhline(1, color=INK, linewidth=0.6)
     dense = int(shown.sum()) > _MOST_MARKERS
     for values, look in ((mean, _MEAN), (median, _MEDIAN)):
         axis.plot(times[shown], values, **{**look, **({"marker": ""} if dense else {})})
-    axis.set_ylim(*_limits(np.concatenate([mean, median, low, high])))
+    every = nees[known & (nees > 0)] if few else mean
+    axis.set_ylim(*_limits(np.concatenate([mean, median, low, high, every])))
     axis.set_ylabel("NEES per dimension")
     time_axis([axis], times)
     heading(axis, "Normalised estimation error squared", context)
-    legend_below(figure, _handles("nees_dof" in data))
+    legend_below(figure, [*_handles("nees_dof" in data), *[_RUN_HANDLE] * few])
     return figure
 
 
-def _log_axis(axis: Axes) -> None:
-    """Make the axis logarithmic, with labels at 1, 2 and 5 of every decade."""
-    axis.set_yscale("log")
-    axis.yaxis.set_minor_locator(LogLocator(subs=(2, 5)))
-    axis.yaxis.set_major_formatter("{x:g}")
-    axis.yaxis.set_minor_formatter("{x:g}")
+def _single_epochs(
+    axis: Axes, times: Array, shown: BoolArray, nees: Array, low: Array, high: Array
+) -> None:
+    """Draw every run at the few epochs whose covariance was kept, and the interval as a bar."""
+    width = (times[-1] - times[0]) / 25
+    axis.bar(times[shown], high - low, width, low, color=GREY, alpha=0.25, linewidth=0)
+    for time, runs in zip(times[shown], nees[:, shown].T):
+        aside = np.linspace(-0.35, 0.35, len(runs)) * width
+        axis.plot(time + aside, np.where(runs > 0, runs, np.nan), **_RUN)
 
 
 def _over_runs(nees: Array, known: BoolArray) -> tuple[Array, Array]:

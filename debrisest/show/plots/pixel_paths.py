@@ -9,7 +9,6 @@ from matplotlib.patches import Patch, Rectangle
 from debrisest.arrays import Array, Data
 from debrisest.show.plots.axes import heading, legend_below
 from debrisest.show.plots.grid import panel_grid
-from debrisest.show.plots.sections import turning
 from debrisest.show.plots.style import BLUE, INK, VERMILION, WIDTH, styled
 
 _COLUMNS = 2
@@ -48,22 +47,43 @@ def _image(axis: Axes, name: str, half_size: Array) -> None:
 
 
 def _path(axis: Axes, path: Array, section: Array) -> None:
-    """Draw a path (time, 2); the epoch after a section belongs to its end too."""
-    turns = turning(section)
-    edge = np.append(False, turns[:-1])
-    for shown, colour, width in ((~turns, BLUE, 1.6), (turns | edge, VERMILION, 0.9)):
-        x, y = np.where(shown[:, None], path, np.nan).T
-        axis.plot(x, y, color=colour, linewidth=width, zorder=3)
-    seen = np.flatnonzero(np.isfinite(path).all(axis=-1))
-    if len(seen):
-        axis.plot(*path[seen[0]], marker="o", markersize=4, color=INK, linestyle="none", zorder=4)
-        axis.plot(*path[seen[-1]], marker="s", markersize=4, color=INK, linestyle="none", zorder=4)
+    """Draw a path (time, 2) section by section, each with its name where it begins."""
+    numbers = np.unique(section[np.isfinite(section)])
+    for number in numbers:
+        mine = np.flatnonzero(section == number)
+        turns = number % 2 == 1
+        through = path[mine[0] : mine[-1] + 2]
+        shade = 0.35 + 0.65 * (number - numbers[0] + 1) / (np.ptp(numbers) + 1)
+        colour, width = (VERMILION, 0.9) if turns else (BLUE, 1.8)
+        axis.plot(*through.T, color=colour, linewidth=width, alpha=shade, zorder=3)
+        seen = through[np.isfinite(through).all(axis=-1)]
+        if len(seen):
+            _name(axis, seen[len(seen) // 2], f"{'C' if turns else 'E'}{int(number) // 2 + 1}")
+    known = path[np.isfinite(path).all(axis=-1)]
+    for place, marker in zip(known[:1], "o"):
+        axis.plot(*place, marker=marker, markersize=4, color=INK, linestyle="none", zorder=4)
+    for place, marker in zip(known[-1:], "s"):
+        axis.plot(*place, marker=marker, markersize=4, color=INK, linestyle="none", zorder=4)
+
+
+def _name(axis: Axes, place: Array, text: str) -> None:
+    """Write the name of a section beside its middle, where it is within the image."""
+    axis.annotate(
+        text,
+        xy=(float(place[0]), float(place[1])),
+        xytext=(4, 4),
+        textcoords="offset points",
+        fontsize=7,
+        color=VERMILION if text.startswith("C") else BLUE,
+        annotation_clip=True,
+        zorder=5,
+    )
 
 
 def _handles() -> list[Line2D | Patch]:
     return [
-        Line2D([], [], color=BLUE, linewidth=1.6, label="estimation (E)"),
-        Line2D([], [], color=VERMILION, linewidth=0.9, label="cameras turn (C)"),
+        Line2D([], [], color=BLUE, linewidth=1.6, label="estimation (E1, E2, ...)"),
+        Line2D([], [], color=VERMILION, linewidth=0.9, label="cameras turn (C1, ...)"),
         Line2D([], [], color=INK, marker="o", markersize=4, linestyle="none", label="start"),
         Line2D([], [], color=INK, marker="s", markersize=4, linestyle="none", label="end"),
         Patch(facecolor="none", edgecolor=INK, linewidth=1.0, label="border of the image"),

@@ -31,6 +31,12 @@ class _Group(NamedTuple):
     labels: tuple[str, ...]
     chosen: tuple[int, ...] = ()
 
+    def shown(self, data: Data) -> bool:
+        """Return whether it is there; a norm is shown where its components are not."""
+        components = f"{self.error}_error"
+        there = np.shape(data.get(self.error, 0.0))[:1] == data["time_s"].shape
+        return there and components not in data
+
     def sigma(self, data: Data) -> Array | None:
         """Return the sigma (time, component), if it is there."""
         found = [self.of(data[name]) for name in self.sigmas if name in data]
@@ -51,6 +57,8 @@ _GROUPS = (
     _Group("rate_error", ("rate_l_sigma", "rate_b_sigma"), "rate", _AXES),
     _Group("attitude_error", ("attitude_error_sigma",), "attitude", _AXES),
     _Group("first_point_error", ("first_point_error_sigma",), "points", _AXES),
+    _Group("attitude", (), "attitude", ("angle",)),
+    _Group("points", (), "points", ("all points",)),
     _Group("inertia_ratio_error", ("inertia_ratio_sigma",), "k1", ("k1", "k2")),
     _Group("inertia_error", _INERTIA, "inertia_tensor", ("Ixx", "Iyy", "Izz"), (0, 4, 8)),
     _Group("inertia_error", _INERTIA, "inertia_tensor", ("Ixy", "Ixz", "Iyz"), (1, 2, 5)),
@@ -58,7 +66,6 @@ _GROUPS = (
     _Group("log_inertia_error", _LOG_RATIOS, "inertia", ("s4", "s5"), (3, 4)),
 )
 _WORDS = {"k1": "inertia ratio", "inertia": "log-ratio", "inertia_tensor": "inertia"}
-_WORDS |= {"points": "first point"}
 DATASETS = tuple(dict.fromkeys(group.error for group in _GROUPS))
 _SETTLED = 0.1
 """Part of the time, at the start, that the limits of the axes do not follow."""
@@ -68,13 +75,13 @@ _SETTLED = 0.1
 def pose_errors(data: Data, context: str) -> Figure:
     """Draw the errors (time, component) that there are, with their 3-sigma bands if known."""
     times = data["time_s"]
-    groups = [group for group in _GROUPS if group.error in data]
+    groups = [group for group in _GROUPS if group.shown(data)]
     figure = Figure(figsize=(WIDTH, 1.3 + 1.55 * len(groups)))
     top, grid = headed_grid(figure, len(groups), sharey="row")
     for row, group in zip(grid, groups):
         _group(list(row), group, data)
     for column in grid.T:
-        time_axis(list(column), times)
+        time_axis([axis for axis in column if axis.get_visible()], times)
     figure.align_ylabels(grid[:, 0])
     heading(top, "Errors with 3-sigma bands", context)
     legend_below(figure, _handles(any(group.sigma(data) is not None for group in groups)))
@@ -91,10 +98,11 @@ def _group(row: list[Axes], group: _Group, data: Data) -> None:
     for axis in row[len(group.labels) :]:
         axis.set_visible(False)
     limit = _limit(data["time_s"], error, bound)
-    row[0].set_ylim(-limit, limit)
+    row[0].set_ylim(-limit if np.any(error < 0) or sigma is not None else 0.0, limit)
     row[0].locator_params(axis="y", nbins=5)
     shown = unit(group.quantity)
-    name = _WORDS.get(group.quantity, group.quantity)
+    name = "first point" if group.error == "first_point_error" else group.quantity
+    name = _WORDS.get(name, name)
     row[0].set_ylabel(name if shown == "1" else f"{name} [{shown}]")
 
 

@@ -12,6 +12,11 @@ BLUE, VERMILION, GREEN, SKY = "#0072B2", "#D55E00", "#009E73", "#56B4E9"
 """Told apart with any kind of colour vision (after Okabe and Ito)."""
 INK, GREY, SHADE = "#1a1a1a", "#6b6b6b", "#e4e4e4"
 AXIS_COLOURS = (BLUE, VERMILION, GREEN)
+ESTIMATOR_COLOURS = (
+    *(BLUE, VERMILION, GREEN, "#CC79A7", "#E69F00", SKY),
+    *(INK, "#8c564b", "#7f7f7f", "#6a3d9a", "#b15928", "#b2df8a"),
+)
+"""In their order in the scenario; the first six are told apart with any kind of colour vision."""
 WIDTH = 7.2
 """Width of every figure, inches."""
 TRUTH: dict[str, Any] = {"color": INK, "linewidth": 0.7, "dashes": (4, 3), "zorder": 4}

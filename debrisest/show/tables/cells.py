@@ -1,18 +1,17 @@
 """The cells of a scenario's tables: measured figures beside published values."""
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
-from itertools import product
+from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from debrisest.arrays import Array, BoolArray
 from debrisest.assessment.consistency import consistent_interval
 from debrisest.assessment.intervals import with_interval
 from debrisest.results.assessed import SIMULATED, Assessed, Result
 from debrisest.scenario.load import LoadedScenario
-from debrisest.scenario.schema import Table, Tables
+from debrisest.scenario.schema import Table
+from debrisest.show.tables.figures import dataset_of, figures, keys_of, unit_of
 from debrisest.show.tables.published import CellKey, Published, published_values
 from debrisest.show.tables.verdict import (
     Verdict,
@@ -21,7 +20,7 @@ from debrisest.show.tables.verdict import (
     interval_meets,
     verdict,
 )
-from debrisest.vocabulary import TWO_SIDED, VOCABULARY, table_scale
+from debrisest.vocabulary import TWO_SIDED, VOCABULARY
 
 _DOUBTFUL_BOUND = 0.05
 """Share of runs by which a bound is none."""
@@ -38,7 +37,9 @@ def cells(scenario: LoadedScenario, results: Assessed) -> pd.DataFrame:
     rows = [
         _row(key, estimator, table, scenario, results, published.get(key))
         for table in scenario.common.tables.layout
-        for key, estimator in _keys(table, scenario)
+        for key, estimator in keys_of(
+            table, scenario.common.tables, scenario.cases, scenario.common.estimators
+        )
     ]
     return pd.DataFrame([row for row in rows if row is not None], columns=COLUMNS)
 
@@ -84,15 +85,6 @@ def _disagreement(row: Mapping[Hashable, Any], entry: Published, expected: list[
     )
 
 
-def _keys(table: Table, scenario: LoadedScenario) -> Iterator[tuple[CellKey, str]]:
-    names = table.cases or [*scenario.cases, *scenario.common.tables.means]
-    columns = product(table.statistics, table.windows)
-    estimators = [SIMULATED] if table.stage == "simulate" else scenario.common.estimators
-    cells = product(names, estimators, table.quantities)
-    for (statistic, window), (case, estimator, quantity) in product(columns, cells):
-        yield CellKey(table.table, case, quantity, statistic, window), estimator
-
-
 def _row(
     key: CellKey,
     estimator: str,
@@ -112,7 +104,7 @@ def _row(
     return {
         **key._asdict(),
         "estimator": estimator,
-        "unit": _unit(table, key.quantity),
+        "unit": unit_of(table, key.quantity),
         "published": published.value if published else None,
         **found,
         "bound": bound["measured"] if bound else np.nan,
@@ -152,8 +144,8 @@ def _measured(
     freedom = [part.freedom(dataset, key.statistic, key.window) for part in present]
     if not any(part.seen(dataset, key.window) for part in present):
         return None
-    groups = [_figures(part, key, table, tables) for part in present]
-    kept = [figures[keep] for figures, keep, _ in groups]
+    groups = [figures(part, key, table, tables) for part in present]
+    kept = [values[keep] for values, keep, _ in groups]
     free = [degrees[keep] for degrees, (_, keep, _) in zip(freedom, groups)]
     measured, low, high = (_rounded(x) for x in with_interval(key.statistic, kept))
     consistent = [_rounded(x) for x in consistent_interval(key.statistic, free)]
@@ -167,32 +159,6 @@ def _measured(
         "consistent_low": consistent[0],
         "consistent_high": consistent[1],
     }
-
-
-def dataset_of(table: Table, quantity: str) -> str:
-    """Return where a quantity lies: what a recovery gives is told apart by its name."""
-    recovered = f"recovered_{quantity}"
-    return recovered if table.stage == "recover" and recovered in VOCABULARY else quantity
-
-
-def _unit(table: Table, quantity: str) -> str:
-    return table.units.get(quantity) or VOCABULARY[dataset_of(table, quantity)].table_unit
-
-
-def _figures(
-    part: Result, key: CellKey, table: Table, tables: Tables
-) -> tuple[Array, BoolArray, BoolArray]:
-    """Return figures per run, which of them count, and which runs diverged.
-
-    The rules of divergence speak of a filter's result; a recovery counts unless it is not finite.
-    """
-    dataset = dataset_of(table, key.quantity)
-    figures = part.figures(dataset, key.statistic, key.window)
-    figures = figures * (table_scale(dataset, _unit(table, key.quantity)) / table_scale(dataset))
-    lost = part.good & ~np.isfinite(figures)
-    if table.stage == "filter" and not table.count_diverged:
-        lost |= part.diverged(tables.diverged)
-    return figures, part.good & ~lost, lost
 
 
 def _rounded(value: float) -> float:

@@ -9,7 +9,8 @@ _LATEX = {ord(sign): f"\\{sign}" for sign in "&%$#_{}"} | {
     ord("<"): "$<$",
     ord(">"): "$>$",
     ord("|"): "$|$",
-    ord('"'): "''",
+    ord("×"): r"$\times$",
+    ord('"'): "{''}",
 }
 _MARKDOWN = re.compile(
     r"[\\`*|\[\]$]"  # signs that mean something wherever they stand

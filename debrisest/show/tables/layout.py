@@ -7,6 +7,7 @@ import pandas as pd
 
 from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
+from debrisest.scenario.schema import Table
 from debrisest.show.tables.published import CellKey, derived_values
 from debrisest.show.tables.verdict import CONSISTENCY, SYMBOLS, Verdict
 from debrisest.vocabulary import VOCABULARY
@@ -27,41 +28,76 @@ class Sheet(NamedTuple):
     rows: list[list[str]]
 
 
-def sheets(scenario: LoadedScenario, cells: pd.DataFrame) -> list[Sheet]:
-    """Return one sheet for each table and window of the scenario that has cells."""
+def sheets(scenario: LoadedScenario, cells: pd.DataFrame, detail: bool = False) -> list[Sheet]:
+    """Return the tables of the scenario that have cells, on as few sheets as they need.
+
+    A sheet has a statistic and window, or, where these are more than the quantities, a quantity.
+    ``detail`` adds to each figure its interval and its ratio to the bound.
+    """
     found = []
     derived = derived_values(scenario, cells)
     marked = [CellKey(*row) in derived for row in cells[list(CellKey._fields)].to_numpy()]
     cells = cells.assign(mark=[DERIVED * is_marked for is_marked in marked])
     for table in scenario.common.tables.layout:
-        for statistic, window in product(table.statistics, table.windows):
-            chosen = cells[
-                (cells["table"] == table.table)
-                & (cells["window"] == window)
-                & (cells["statistic"] == statistic)
-                & cells["quantity"].isin(table.quantities)
-            ]
-            if not chosen.empty:
-                heads, rows = _grid(chosen)
-                alone = f"{_heads(chosen)[0]}, " if len(table.quantities) == 1 else ""
-                title = f"{table.title}: {alone}{statistic}, {window}"
-                found.append(Sheet(table.table, title, heads, rows))
+        mine = (cells["table"] == table.table) & cells["quantity"].isin(table.quantities)
+        mine &= cells["statistic"].isin(table.statistics) & cells["window"].isin(table.windows)
+        chosen = cells[mine]
+        if len(table.statistics) * len(table.windows) > len(table.quantities):
+            parts = [chosen[chosen["quantity"] == name] for name in table.quantities]
+            found += [_of_quantity(table, part, detail) for part in parts if len(part)]
+            continue
+        for column in product(table.statistics, table.windows):
+            part = chosen[_in_column(chosen, column)]
+            if len(part):
+                found.append(_of_column(table, part, column, detail))
     return found
 
 
-def _grid(cells: pd.DataFrame) -> tuple[list[str], list[list[str]]]:
+def _of_column(table: Table, cells: pd.DataFrame, column: tuple[str, str], detail: bool) -> Sheet:
+    """Return the sheet of a statistic and window."""
+    heads, rows = _grid(cells, detail)
+    alone = f"{_heads(cells)[0]}, " if len(table.quantities) == 1 else ""
+    return Sheet(table.table, f"{table.title}: {alone}{', '.join(column)}", heads, rows)
+
+
+def _of_quantity(table: Table, cells: pd.DataFrame, detail: bool) -> Sheet:
+    """Return the sheet of a quantity: statistics and windows side by side, sources below."""
+    name = str(cells["quantity"].iloc[0])
+    every = product(table.statistics, table.windows)
+    columns = [column for column in every if _in_column(cells, column).any()]
+    common = [same.pop() for each in zip(*columns) if len(same := set(each)) == 1]
+    heads = [", ".join(part for part in each if part not in common) for each in columns]
+    rows = [
+        [
+            str(case),
+            _SHOWN.get(source, source),
+            *(_text(part[_in_column(part, each)], source, name, detail) for each in columns),
+        ]
+        for case, part in cells.groupby("case", sort=False)
+        for source in _sources(part)
+    ]
+    title = ", ".join([f"{table.title}: {_heads(cells)[0]}", *common])
+    return Sheet(table.table, title, ["case", "source", *heads], rows)
+
+
+def _in_column(cells: pd.DataFrame, column: tuple[str, str]) -> pd.Series:
+    return (cells["statistic"] == column[0]) & (cells["window"] == column[1])
+
+
+def _grid(cells: pd.DataFrame, detail: bool) -> tuple[list[str], list[list[str]]]:
     """Sources side by side for a single quantity, one below the other for several or for words."""
     names = list(dict.fromkeys(cells["quantity"]))
     by_case = list(cells.groupby("case", sort=False))
     if len(names) == 1 and not cells["verdict"].isin(CONSISTENCY).any():
         sources = _sources(cells)
         rows = [
-            [str(case), *(_text(part, source, names[0]) for source in sources)]
+            [str(case), *(_text(part, source, names[0], detail) for source in sources)]
             for case, part in by_case
         ]
         return ["case", *(_SHOWN.get(source, source) for source in sources)], rows
     rows = [
-        [str(case), _SHOWN.get(source, source), *(_text(part, source, name) for name in names)]
+        [str(case), _SHOWN.get(source, source)]
+        + [_text(part, source, name, detail) for name in names]
         for case, part in by_case
         for source in _sources(part)
     ]
@@ -79,7 +115,7 @@ def _sources(cells: pd.DataFrame) -> list[str]:
     return [*paper, *dict.fromkeys(cells["estimator"])]
 
 
-def _text(part: pd.DataFrame, source: str, quantity: str) -> str:
+def _text(part: pd.DataFrame, source: str, quantity: str, detail: bool) -> str:
     """Return a figure of three digits, its verdict's sign, and before it the runs left out."""
     part = part[part["quantity"] == quantity]
     if source == PAPER:
@@ -92,4 +128,12 @@ def _text(part: pd.DataFrame, source: str, quantity: str) -> str:
     figure = f"{measured:.3g}{VOCABULARY[quantity].after_figure}" if pd.notna(measured) else "-"
     lost = int(own["failed"].iloc[0] + own["diverged"].iloc[0])
     note = f"({lost}) " if lost else ""
-    return f"{note}{figure} {SYMBOLS[Verdict(verdict)]}".rstrip()
+    more = _details(*own[["measured", "ci_low", "ci_high", "bound"]].iloc[0]) if detail else ""
+    return f"{note}{figure}{more} {SYMBOLS[Verdict(verdict)]}".rstrip()
+
+
+def _details(measured: float, low: float, high: float, bound: float) -> str:
+    """Return the interval of a figure and its ratio to the bound, as far as they are known."""
+    interval = f" [{low:.3g}, {high:.3g}]" if pd.notna(low) and pd.notna(high) else ""
+    known = pd.notna(bound) and bound > 0 and pd.notna(measured) and measured != bound
+    return interval + (f" ×{measured / bound:.3g}" if known else "")

@@ -17,8 +17,10 @@ from debrisest.show.tables.verdict import (
     CONSISTENCY,
     LEGEND,
     LEGEND_OF_CONSISTENCY,
+    LEGEND_OF_DETAILS,
     LEGEND_OF_LOST,
 )
+from debrisest.show.terminal import console
 
 MARK = "written by debrisest"
 """What tells the files of tables from others of their name."""
@@ -59,8 +61,9 @@ def _json(_: LoadedScenario, cells: pd.DataFrame) -> str:
 
 def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     common = scenario.common
-    parts = [f"# {markdown(common.title)}", paragraph(common.source), *_legends(scenario, cells)]
-    for sheet in sheets(scenario, cells):
+    told = legends(scenario, cells, detail=True)
+    parts = [f"# {markdown(common.title)}", paragraph(common.source), *told]
+    for sheet in sheets(scenario, cells, detail=True):
         lines = [sheet.heads, ["---"] * len(sheet.heads), *sheet.rows]
         escaped = [[markdown(text) for text in line] for line in lines]
         body = "\n".join(f"| {' | '.join(line)} |" for line in escaped)
@@ -68,57 +71,71 @@ def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
     return "\n\n".join(part for part in (*parts, f"<!-- {MARK} -->") if part) + "\n"
 
 
-def _legends(scenario: LoadedScenario, cells: pd.DataFrame) -> list[str]:
+def legends(scenario: LoadedScenario, cells: pd.DataFrame, detail: bool = False) -> list[str]:
     """Return what explains the signs, the numbers in brackets and the words of these cells."""
-    made = "; ".join(dict.fromkeys(derived_values(scenario, cells).values()))
+    details = [LEGEND_OF_DETAILS] if detail and cells["ci_low"].notna().any() else []
     signs = [LEGEND] if cells["published"].notna().any() else []
     lost = [LEGEND_OF_LOST] if (cells["failed"] + cells["diverged"] > 0).any() else []
     words = [LEGEND_OF_CONSISTENCY] if cells["verdict"].isin(CONSISTENCY).any() else []
+    made = "; ".join(dict.fromkeys(derived_values(scenario, cells).values()))
     derived = [f"{DERIVED} not printed so: {made}"] if made else []
-    return ["; ".join(signs + lost)] * bool(signs + lost) + derived + words
+    first = signs + lost + details
+    return ["; ".join(first)] * bool(first) + derived + words
 
 
 def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    legends = _legends(scenario, cells)
-    parts = ["\n".join(f"% {text}" for text in (scenario.common.title, *legends))]
-    for sheet in sheets(scenario, cells):
+    """Return floats with captions and labels, with the rules of the package booktabs."""
+    told = legends(scenario, cells, detail=True)
+    parts = ["\n".join(f"% {text}" for text in (scenario.common.title, *told))]
+    for number, sheet in enumerate(sheets(scenario, cells, detail=True), 1):
         head, *rows = (
             " & ".join(latex(text) for text in line) + r" \\" for line in (sheet.heads, *sheet.rows)
         )
+        columns = "".join("l" if head in ("case", "source") else "r" for head in sheet.heads)
         parts.append(
             "\\begin{table}\n"
-            f"\\caption{{{latex(_caption(sheet, legends))}}}\n"
-            f"\\begin{{tabular}}{{{'l' * len(sheet.heads)}}}\n\\hline\n{head}\n\\hline\n"
+            f"\\caption{{{latex(_caption(sheet, told))}}}\n"
+            f"\\label{{tab:{scenario.name}-{number}}}\n"
+            f"\\begin{{tabular}}{{{columns}}}\n\\toprule\n{head}\n\\midrule\n"
             + "\n".join(rows)
-            + "\n\\hline\n\\end{tabular}\n\\end{table}"
+            + "\n\\bottomrule\n\\end{tabular}\n\\end{table}"
         )
     return "\n\n".join((*parts, f"% {MARK}")) + "\n"
 
 
-def _caption(sheet: Sheet, legends: list[str]) -> str:
-    return ". ".join([f"Table {sheet.number}: {sheet.title}", *legends])
+def _caption(sheet: Sheet, told: list[str]) -> str:
+    return ". ".join([f"Table {sheet.number}: {sheet.title}", *told])
 
 
 def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
-    console = Console(width=110)
-    with console.capture() as capture:
-        for sheet in sheets(scenario, cells):
-            title = Text(f"\nTable {sheet.number}: {sheet.title}", style="bold")
-            console.print(title, soft_wrap=True)
-            console.print(_fitting(sheet, console))
-        for text in _legends(scenario, cells):
-            console.print(f"{text}\n", style="dim", soft_wrap=True)
+    """Return tables as wide as the terminal; figures have their intervals where these fit."""
+    terminal, details = console(), False
+    both = zip(sheets(scenario, cells), sheets(scenario, cells, detail=True))
+    with terminal.capture() as capture:
+        for plain, full in both:
+            title = Text(f"\nTable {plain.number}: {plain.title}", style="bold")
+            terminal.print(title, soft_wrap=True)
+            detailed = _rich_table(full)
+            fits = _width(detailed, terminal) <= terminal.width
+            terminal.print(detailed if fits else _fitting(plain, terminal))
+            details |= fits
+        for text in legends(scenario, cells, details):
+            terminal.print(f"{text}\n", style="dim", soft_wrap=True, markup=False)
     return capture.get()
 
 
-def _fitting(sheet: Sheet, console: Console) -> Table:
+def _width(table: Table, terminal: Console) -> int:
+    """Return how wide a table is where nothing is folded."""
+    return terminal.measure(table, options=terminal.options.update_width(10**4)).maximum
+
+
+def _fitting(sheet: Sheet, terminal: Console) -> Table:
     """Return the table; if it is too wide, with units below the names, then names in parts."""
-    unlimited = console.options.update_width(10**4)
-    below = [head.replace(" (", "\n(") for head in sheet.heads]
+    below = [head.replace(" (", "\n(").replace(", ", ",\n") for head in sheet.heads]
     parts = [head.replace("_", "_\n") for head in below]
     tables = [_rich_table(sheet._replace(heads=heads)) for heads in (sheet.heads, below, parts)]
-    widths = [console.measure(table, options=unlimited).maximum for table in tables]
-    return next((t for t, width in zip(tables, widths) if width <= console.width), tables[-1])
+    fits = (table for table in tables if _width(table, terminal) <= terminal.width)
+    return next(fits, tables[-1])
 
 
 def _rich_table(sheet: Sheet) -> Table:

@@ -1,5 +1,6 @@
 """The tables of a scenario from its results, and the files that they are written to."""
 
+import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -10,7 +11,9 @@ from debrisest.results.assessed import assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
-from debrisest.show.tables.cells import COLUMNS, cells, dataset_of
+from debrisest.show.tables.cells import COLUMNS, cells
+from debrisest.show.tables.figures import dataset_of
+from debrisest.show.tables.origin import NAME, origin, replaced
 from debrisest.show.tables.render import MARK, render
 
 
@@ -44,17 +47,21 @@ def chosen(rows: pd.DataFrame, asked: Callable[[str, str], bool]) -> pd.DataFram
 
 
 def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> list[str]:
-    """Write ``tables.csv`` and beside it the tables as in the paper, where they are not so yet.
+    """Write ``tables.csv``, the tables as in the paper, and where they come from.
 
-    A file of such a name that was not written by this is renamed; returns a sentence on each.
+    What is so already is left. A file of such a name that was not written by this is renamed;
+    returns a sentence on each, and on tables of other settings that were there.
     """
-    kept = []
+    source = out / scenario.name / NAME
+    told = origin(scenario, out, rows)
+    kept = [sentence] if (sentence := replaced(source, told)) else []
     for form, mark in (("csv", ",".join(COLUMNS)), ("md", MARK), ("tex", MARK)):
         target = out / scenario.name / f"tables.{form}"
         if not _ours(target, mark):
             target.replace(own := target.with_name(f"{target.name}.old"))
             kept.append(f"{target}: this file was not written by debrisest; it is now {own.name}")
         put(target, render(scenario, rows, form).encode())
+    put(source, (json.dumps(told, indent=1) + "\n").encode())
     return kept
 
 

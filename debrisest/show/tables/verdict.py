@@ -32,7 +32,8 @@ SYMBOLS = {
     **{said: str(said) for said in CONSISTENCY},
 }
 LEGEND = "= reproduced, < better, > worse than published, x not reproduced (most runs were lost)"
-LEGEND_OF_LOST = "(n) runs that diverged or failed, left out"
+LEGEND_OF_LOST = "(n) runs that diverged or failed, left out: debrisest status says why"
+LEGEND_OF_DETAILS = "[low, high] 95 % interval over the runs, ×n times the bound"
 LEGEND_OF_CONSISTENCY = (
     "consistent: within the 95 % chi-square interval of the runs used; over-confident: above it, "
     "the errors are larger than the covariance says; over-cautious: below it; not the minimum: the "

@@ -19,8 +19,9 @@ from debrisest.results.status import Wanted, up_to_date
 from debrisest.runner.execute import _attributes
 from debrisest.runner.plan import Selection, Step, plan
 from debrisest.scenario.load import LoadedScenario, load_scenario
-from debrisest.show.plots.draw import FIGURES, Kind, draw_all
+from debrisest.show.plots.draw import draw_all
 from debrisest.show.plots.gather import all_runs, single_runs
+from debrisest.show.plots.kinds import FIGURES, Kind
 from debrisest.vocabulary import VOCABULARY
 
 SCENARIO = """

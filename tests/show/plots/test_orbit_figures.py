@@ -86,12 +86,14 @@ def test_paths_stay_apart_by_section_within_the_border(data: Data) -> None:
     for index, axis in enumerate(shown):
         border = next(patch for patch in axis.patches if isinstance(patch, Rectangle))
         assert (border.get_width(), border.get_height()) == (480.0, 360.0)
-        measuring, moving = (np.asarray(line.get_xdata()) for line in axis.get_lines()[:2])
         path = data["true_pixel"][:, index, 0]
-        even = SECTION % 2 == 0
-        np.testing.assert_allclose(measuring[even], path[even])
-        assert np.isnan(measuring[~even]).all()
-        np.testing.assert_allclose(moving[~even], path[~even])
+        for number, line in zip(np.unique(SECTION), axis.get_lines()):
+            mine = np.flatnonzero(number == SECTION)
+            reached = path[mine[0] : mine[-1] + 2]
+            np.testing.assert_allclose(np.asarray(line.get_xdata()), reached)
+        colours = [line.get_color() for line in axis.get_lines()[:5]]
+        assert len({*colours[::2]}) == len({*colours[1::2]}) == 1
+        assert colours[0] != colours[1]
 
 
 def test_a_third_satellite_has_an_image_of_its_own(data: Data) -> None:

@@ -157,7 +157,11 @@ def test_nees_over_the_runs_and_its_interval() -> None:
     known = data["nees"][:, [1, 10, 50, 100]]
     np.testing.assert_allclose(mean, np.nanmean(known, axis=0))
     np.testing.assert_allclose(median, np.nanmedian(known, axis=0))
-    band = np.asarray(figure.axes[0].collections[0].get_paths()[0].vertices)[:, 1]
+    bars = [bar for bar in figure.axes[0].patches if isinstance(bar, Rectangle)]
+    assert len(bars) == 4
+    band = np.array(
+        [edge for bar in bars for edge in (bar.get_y(), bar.get_y() + bar.get_height())]
+    )
     freedom = DIMENSIONS * (RUNS - 1)
     np.testing.assert_allclose(
         [band.min(), band.max()], chi2.ppf([0.025, 0.975], freedom) / freedom

@@ -377,7 +377,10 @@ def figures_of(text: str) -> list[str]:
 @pytest.mark.parametrize("form", ["md", "tex", "rich"])
 def test_laid_out_tables_hold_every_figure(form: str, rendered: Callable) -> None:
     table = pd.read_csv(StringIO(rendered("csv")))
-    shown = figures_of(rendered(form))
+    text = rendered(form).replace("\\[", "[").replace("\\]", "]")
+    for low, high in zip(table["ci_low"], table["ci_high"]):
+        assert f"[{low:.3g}, {high:.3g}]" in text
+    shown = figures_of(re.sub(r"\[[^]]*, [^]]*\]", "", text))
     for measured in table["measured"]:
         assert f"{measured:.3g}" in shown or "." not in f"{measured:.3g}"
     published = table.drop_duplicates(["table", "case", "quantity", "window"])["published"]

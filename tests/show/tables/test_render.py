@@ -91,3 +91,50 @@ def test_heads_that_fit_stay_on_one_line(scenario: LoadedScenario) -> None:
     assert "peak_torque (mN m)" in render(
         scenario, table({"quantity": "peak_torque", "unit": "mN m"}, {}), "rich"
     )
+
+
+def detailed(**columns: object) -> dict:
+    of_all = {"published": 1.0, "ci_low": 0.875, "ci_high": 1.125, "bound": 0.8, "measured": 1.2}
+    return of_all | {"verdict": "reproduced"} | columns
+
+
+@pytest.mark.parametrize(("width", "shown"), [(60, False), (80, True), (220, True)])
+def test_intervals_are_shown_where_the_terminal_is_wide_enough(
+    width: int, shown: bool, scenario: LoadedScenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(width))
+    names = ["peak_torque", "nis"]
+    text = render(scenario, table(*(detailed(quantity=name) for name in names)), "rich")
+    lines = [line for line in text.splitlines() if line[:5] not in ("Table", "= rep")]
+    assert max(map(len, lines)) <= width
+    assert (text.count("1.2 [0.875, 1.12] ×1.5 =") == 2) is shown
+    assert ("[low, high] 95 % interval" in text) is shown
+    assert text.count("1.2") >= 2
+
+
+def test_a_bound_is_not_told_as_a_multiple_of_itself(scenario: LoadedScenario) -> None:
+    text = render(scenario, table(detailed(measured=0.8)), "md")
+    assert "0.8 \\[0.875, 1.12\\] =" in text
+    assert " ×" not in text.partition("## ")[2]
+
+
+def test_latex_has_booktabs_a_label_and_numbers_at_the_right(scenario: LoadedScenario) -> None:
+    text = render(scenario, table(detailed()), "tex")
+    assert "\\begin{tabular}{lrr}" in text
+    for command in ("\\toprule", "\\midrule", "\\bottomrule", "\\label{tab:small-1}"):
+        assert text.count(command) == 1
+    assert "\\hline" not in text
+    assert r"1.2 [0.875, 1.12] $\times$1.5 =" in text
+
+
+def test_many_windows_of_few_quantities_are_columns(small: Path) -> None:
+    before, title, after = small.read_text().partition("What a filter says")
+    after = after.replace("[0-60 s]", "[0-60 s, 10 s, end]")
+    small.write_text(before + title + after)
+    windows = {"0-60 s": 1.0, "10 s": 2.0, "end": 3.0}
+    rows = table(*({"window": name, "measured": value} for name, value in windows.items()))
+    text = render(load_scenario(small), rows, "md")
+    assert text.count("## Table") == 1
+    assert "a truth: nis, mean\n" in text
+    assert "| case | source | 0-60 s | 10 s | end |" in text
+    assert "| slow | triad | 1 | 2 | 3 |" in text

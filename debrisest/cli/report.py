@@ -1,0 +1,74 @@
+"""The command that writes all that was found into one file for a browser."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from typer import Option
+
+from debrisest.cli.inputs import load_all, select
+from debrisest.cli.options import (
+    RESULTS,
+    CaseNames,
+    Configs,
+    EstimatorNames,
+    Out,
+    Plugins,
+    Runs,
+    Settings,
+    Unprinted,
+    Variant,
+)
+
+
+def report(
+    configs: Configs,
+    out: Out = RESULTS,
+    runs: Runs = None,
+    case: CaseNames = None,
+    estimator: EstimatorNames = None,
+    settings: Settings = None,
+    variant: Variant = None,
+    plugins: Plugins = None,
+    figures: Annotated[
+        bool, Option("--figures/--no-figures", help="With those of the first case.")
+    ] = True,
+    to: Annotated[Path | None, Option("--to", help="File (default: report.html in DIR).")] = None,
+    quiet: Unprinted = False,
+) -> None:
+    """Write the results that are up to date into one file of HTML that needs no network."""
+    from functools import partial
+
+    from debrisest.errors import UserError
+    from debrisest.files import replacing
+    from debrisest.results.open import find_results
+    from debrisest.results.status import up_to_date
+    from debrisest.runner.plan import Selection, plan
+    from debrisest.show.report.chapter import chapter
+    from debrisest.show.report.figures import pictures
+    from debrisest.show.report.page import page
+    from debrisest.show.tables.tabulate import chosen, tabulate
+
+    scenarios = load_all(configs, settings, plugins, variant)
+    selection = select(scenarios, runs, case, estimator)
+    chapters = []
+    for scenario in scenarios:
+        rows, _ = tabulate(scenario, out, plan(scenario, out, Selection(selection.runs)))
+        steps = plan(scenario, out, selection)
+        results = up_to_date(find_results(out / scenario.name), steps)
+        if not results.chunks:
+            print(f"left out of the report: {scenario.name}: no results", file=sys.stderr)
+            continue
+        asked = partial(selection.asks_for, means=scenario.common.tables.means)
+        drawn = pictures(scenario, out, steps) if figures else iter(())
+        cells = chosen(rows, asked)
+        chapters.append(chapter(scenario, results, steps, cells, settings or (), drawn))
+    if not chapters:
+        names = " ".join(map(str, configs))
+        raise UserError(f"no results that are up to date; run: debrisest sweep {names}")
+    alone = [chapter.name for chapter in chapters if len(scenarios) == 1]
+    path = to or Path(out, *alone, "report.html")
+    with replacing(path) as temporary:
+        temporary.write_text(page(chapters), encoding="utf-8")
+    if not quiet:
+        print(f"wrote {path}")

@@ -1,0 +1,1 @@
+"""All that was found of some scenarios as one file of HTML that needs nothing else."""

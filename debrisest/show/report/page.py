@@ -1,0 +1,34 @@
+"""Chapters as one file of HTML: styles, script and figures are in it, so that it opens anywhere."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from debrisest.errors import UserError
+from debrisest.show.plots.style import ESTIMATOR_COLOURS
+from debrisest.show.report.chapter import Chapter
+from debrisest.show.tables.verdict import Verdict
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+
+def page(chapters: Sequence[Chapter]) -> str:
+    """Return the report; raise UserError where jinja2 is not installed."""
+    template = _environment().get_template("page.html")
+    return template.render(chapters=chapters, colours=ESTIMATOR_COLOURS, verdicts=list(Verdict))
+
+
+def _environment() -> "Environment":
+    try:
+        from jinja2 import Environment, PackageLoader, StrictUndefined
+    except ImportError:
+        raise UserError("a report needs jinja2: pip install 'debrisest[report]'") from None
+    environment = Environment(
+        loader=PackageLoader("debrisest.show.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["figure"] = lambda value: "" if value is None else f"{value:.3g}"
+    return environment

@@ -1,0 +1,60 @@
+"""Results of changed scenarios beside each other, and tables that tell where they come from."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+
+SLOW = ("--case", "slow", "--estimator", "wahba")
+
+
+def test_a_variant_has_a_folder_of_its_own(small: Path, swept: Path, sweep, cli) -> None:
+    before = (swept / "small" / "tables.csv").read_bytes()
+    changed = ("--set", "estimators.wahba.filter.redraw=false", "--variant", "drawn-once")
+    assert sweep(small, swept, *SLOW, *changed).exit_code == 0
+    assert (swept / "small" / "tables.csv").read_bytes() == before
+    own = pd.read_csv(swept / "small@drawn-once" / "tables.csv")
+    assert set(own["case"]) == {"slow"}
+    shown = cli("table", small, "--out", swept, *SLOW, *changed, "--format", "csv").stdout
+    plain = cli("table", small, "--out", swept, *SLOW, "--format", "csv").stdout
+    assert shown != plain and len(shown.splitlines()) > 1 and len(plain.splitlines()) > 1
+    compared = cli("compare", swept / "small", swept / "small@drawn-once").stdout
+    assert "estimators.wahba.filter.redraw: True -> False" in compared
+    assert "paired: the same data" in compared
+
+
+def test_the_same_settings_give_the_same_bytes_under_another_name(
+    small: Path, swept: Path, sweep, same_data, data_of
+) -> None:
+    assert sweep(small, swept, *SLOW, "--variant", "twin").exit_code == 0
+    name = "slow/assess-wahba.000000.h5"
+    assert same_data(data_of(swept / "small")[name], data_of(swept / "small@twin")[name])
+
+
+def test_a_name_that_no_folder_should_have_is_told(small: Path, tmp_path: Path, cli) -> None:
+    done = cli("sweep", small, "--out", tmp_path / "out", "--variant", "../up")
+    assert done.exit_code == 2
+    assert done.stderr.startswith("--variant ../up: a name has letters, digits, ")
+    assert not (tmp_path / "out").exists()
+
+
+def test_tables_tell_where_they_come_from(swept: Path) -> None:
+    told = json.loads((swept / "small" / "tables.origin.json").read_text())
+    assert told["settings"]["seed"] == 7
+    assert told["settings"]["runs"] == 3
+    assert len(told["commit"]) == len(told["software"]) == 1
+    assert len(told["computed"]) == 2
+
+
+def test_tables_that_replace_others_are_told(
+    small: Path, swept: Path, sweep: Callable, cli: Callable
+) -> None:
+    assert cli("table", small, "--out", swept).stderr == ""
+    fewer = cli("table", small, "--out", swept, "--runs", 2).stderr
+    assert "these tables replace others (runs was 3, is 2); --variant NAME keeps both" in fewer
+    assert "replace" in cli("table", small, "--out", swept).stderr
+    done = sweep(small, swept, *SLOW, "--set", "sensors.points.noise_m=0.02")
+    assert "sensors.points.noise_m was 0.01, is 0.02" in done.stderr
+    (swept / "small" / "tables.origin.json").write_text("[]")
+    assert "replace" not in cli("table", small, "--out", swept).stderr
