@@ -48,7 +48,10 @@ class Experiment:
         self.model = replay_model(self.known, sigma, np.sqrt(plain))
 
     def estimate(self, **options):
-        return replay(self.model, self.prior, self.covariance, self.measured, **options)
+        return self.estimate_of(self.measured, **options)
+
+    def estimate_of(self, measured, **options):
+        return replay(self.model, self.prior, self.covariance, measured, **options)
 
 
 @pytest.fixture(scope="session")
