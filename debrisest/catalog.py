@@ -26,6 +26,7 @@ from debrisest.parts.sensors.attitude_sensor import AttitudeSensor
 from debrisest.parts.sensors.camera_range import CameraRange
 from debrisest.parts.sensors.detections import Detections
 from debrisest.parts.sensors.feature_points import FeaturePoints
+from debrisest.parts.sensors.images import Images
 from debrisest.parts.sensors.pinhole_camera import PinholeCamera
 from debrisest.parts.sensors.pointing_control import PointingControl
 from debrisest.parts.sensors.stereo_camera import StereoCamera
@@ -54,6 +55,8 @@ from debrisest.parts.truth.random_tumble import RandomTumble
 from debrisest.parts.truth.rigid_points import RigidPoints
 from debrisest.parts.truth.satellite import Satellite
 from debrisest.parts.truth.seen_from_leader import SeenFromLeader
+from debrisest.parts.truth.still import Still
+from debrisest.parts.truth.textured_body import TexturedBody
 from debrisest.parts.truth.torque_free import TorqueFree
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.problems.camera_range.redundant import CameraRangeRedundant
@@ -71,10 +74,10 @@ def kind_of(part: type[Part]) -> str:
 
 
 CATALOG: dict[str, list[type[Part]]] = {
-    "target": [RigidPoints, RandomPoints, RandomBox, RandomRigidBody],
+    "target": [RigidPoints, RandomPoints, RandomBox, RandomRigidBody, TexturedBody],
     "orbit": [KeplerOrbit, PerturbedOrbit],
     "motion": [TorqueFree, GravityGradient, SeenFromLeader, RandomTumble, RandomTorqueFree],
-    "observers": [Hold, Drift, Satellite, ClosedEllipse],
+    "observers": [Hold, Drift, Satellite, ClosedEllipse, Still],
     "sensors": [
         FeaturePoints,
         StereoCamera,
@@ -85,6 +88,7 @@ CATALOG: dict[str, list[type[Part]]] = {
         AttitudeSensor,
         Detections,
         CameraRange,
+        Images,
     ],
     "measured": [Datasets, MeasuredTracks, MeasuredPoses],
     "starts": [DrawnPose, DrawnOrbit, DrawnShape, GivenGuess],
