@@ -9,7 +9,7 @@ from debrisest.arrays import Array, BoolArray
 from debrisest.vision.libraries import vision_library
 
 Image = NDArray[np.uint8]
-_WINDOW, _LEVELS = 21, 3
+_WINDOW, _LEVELS = 13, 3
 _QUALITY = 0.01
 """Of the best corner's strength, the least that counts."""
 

@@ -23,7 +23,7 @@ FORWARD_BACKWARD = 0.5
 """Most that a point may be off, px, when it is followed there and back."""
 EPIPOLAR = 1.0
 """Most difference of the rows, px."""
-RIGID = 2.0
+RIGID = 1.2
 """Most that a point may be off from the pose of all others, px."""
 _STILL, _MOVES = 1.0, 3.0
 """A point that moves less, px, while the body moves it by more, stands still."""
