@@ -13,6 +13,7 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.vision.body_map import BodyMap
+from debrisest.vision.contrast import evened
 from debrisest.vision.moving import moving
 from debrisest.vision.optical_flow import Image, corners, followed
 from debrisest.vision.rigid_pose import RigidPose, fit, off
@@ -63,7 +64,7 @@ class StereoTracker:
 
     def take(self, frames: Image, epoch: int) -> Followed:
         """Return what is found in an epoch of ``frames (time, camera, row, column)``."""
-        images = self._rectified.images(frames[epoch])
+        images = [evened(image) for image in self._rectified.images(frames[epoch])]
         changes = self._changes(frames, epoch)
         now = self._follow(images) if self._before else Followed()
         now = self._renew(images, now, changes)
