@@ -60,15 +60,15 @@ class StereoTracker:
         self.poses: list[RigidPose] = []
         self.found: list[Followed] = []
         self._draws = np.random.default_rng(seed)
-        self._before: list[Image] = []
+        self.images: list[list[Image]] = []
 
     def take(self, frames: Image, epoch: int) -> Followed:
         """Return what is found in an epoch of ``frames (time, camera, row, column)``."""
         images = [evened(image) for image in self._rectified.images(frames[epoch])]
         changes = self._changes(frames, epoch)
-        now = self._follow(images) if self._before else Followed()
+        now = self._follow(images) if self.images else Followed()
         now = self._renew(images, now, changes)
-        self._before = images
+        self.images.append(images)
         self.found.append(now)
         return now
 
@@ -84,7 +84,7 @@ class StereoTracker:
         was = self.pair.project(self.poses[-1].of(self.map.points[before.numbers]))
         guess = np.where(np.isfinite(shown), before.pixels + shown - was, before.pixels)
         left, found = followed(
-            self._before[0], images[0], before.pixels[:, 0], guess[:, 0], FORWARD_BACKWARD
+            self.images[-1][0], images[0], before.pixels[:, 0], guess[:, 0], FORWARD_BACKWARD
         )
         self.counts["lost by optical flow"] += int((~found).sum())
         guess_right = left + (guess[:, 1] - guess[:, 0])
