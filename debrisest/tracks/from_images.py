@@ -6,17 +6,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array, IntArray
+from debrisest.arrays import Array
 from debrisest.errors import UserError
 from debrisest.tracks.types import Camera, Rig, Tracks
 from debrisest.tracks.write_calibration import camera_matrix
 from debrisest.vision.camera import PinholeImage
 from debrisest.vision.image_files import ImageSequence
+from debrisest.vision.refined import SHORTEST, refined
 from debrisest.vision.stereo_pair import StereoPair, rectified
-from debrisest.vision.stereo_tracker import Followed, StereoTracker, follow_all
+from debrisest.vision.stereo_tracker import StereoTracker, follow_all
 
-SHORTEST = 3
-"""Frames of a track that is kept."""
 _FEWEST = 4
 """Tracks of which a motion can be found."""
 
@@ -25,6 +24,8 @@ class Tracked(NamedTuple):
     """What was followed, how well, and what was left out and why."""
 
     tracks: Tracks
+    shown: Array
+    """Pixels (epoch, camera, feature, 2) in the images as they are, for pictures."""
     left_out: Counter[str]
     """Reasons: how many points."""
     known_again: int
@@ -64,19 +65,37 @@ def stereo_tracks(
     turned = rectified(*cameras_of(rig, images))
     tracker = StereoTracker(turned, seed=0)
     follow_all(tracker, images.frames, each)
-    noise = _noise(tracker)
-    kept, index = _long_enough(tracker.found, images.source)
-    points, sigma = (np.full((len(times), len(kept), 3), np.nan) for _ in range(2))
-    for epoch, found in enumerate(tracker.found):
-        which = index[found.numbers]
-        seen, spread = _in_first_camera(turned.pair, turned.rotation, found.pixels, noise)
-        points[epoch, which[which >= 0]] = seen[which >= 0]
-        sigma[epoch, which[which >= 0]] = spread[which >= 0]
-    names = tuple(f"f{number + 1}" for number in range(len(kept)))
-    lines = np.arange(len(times))
-    tracks = Tracks(images.source, times, names, lines, points, sigma)
-    left_out = tracker.counts + Counter({f"seen in fewer than {SHORTEST} frames": (index < 0).sum()})
-    return Tracked(tracks, left_out, tracker.known_again, noise)
+    found = refined(tracker)
+    if found is None or len(found.bundle.points) < _FEWEST:
+        raise UserError(_nothing(images))
+    epoch, point, pixels = found.sightings
+    shape = (len(times), len(found.bundle.points))
+    points, sigma = (np.full((*shape, 3), np.nan) for _ in range(2))
+    points[epoch, point], sigma[epoch, point] = _in_first_camera(
+        turned.pair, turned.rotation, pixels, found.noise_px
+    )
+    shown = np.full((shape[0], 1, shape[1], 2), np.nan)
+    shown[epoch, 0, point] = cameras_of(rig, images)[0].project(points[epoch, point])
+    lost = len(tracker.map.points) - shape[1]
+    left_out = tracker.counts + Counter(
+        {f"seen in fewer than {SHORTEST} frames": lost, "off the motion of the others": found.off}
+    )
+    tracks = Tracks(
+        images.source, times, _names(shape[1]), np.arange(len(times)), points, sigma
+    )
+    return Tracked(tracks, shown, left_out, tracker.known_again, found.noise_px)
+
+
+def _names(count: int) -> tuple[str, ...]:
+    return tuple(f"f{number + 1}" for number in range(count))
+
+
+def _nothing(images: ImageSequence) -> str:
+    return (
+        f"{images.source}: nothing can be followed: fewer than {_FEWEST} points in {SHORTEST} "
+        "frames or more; the body must be in all images, sharp, and turn less than about 15 deg "
+        "from one to the next"
+    )
 
 
 def _five(camera: Camera) -> Array:
@@ -93,29 +112,3 @@ def _in_first_camera(
     seen, cofactor = pair.points(pixels)
     covariance = noise**2 * rotation.T @ cofactor @ rotation
     return seen @ rotation, np.sqrt(np.diagonal(covariance, axis1=-2, axis2=-1))
-
-
-def _long_enough(found: list[Followed], source: str) -> tuple[IntArray, IntArray]:
-    """Return the numbers of the tracks that are kept, and the new number of each (-1: none)."""
-    numbers = np.concatenate([one.numbers for one in found])
-    frames = np.bincount(numbers)
-    kept = np.flatnonzero(frames >= SHORTEST)
-    if len(kept) < _FEWEST:
-        raise UserError(
-            f"{source}: nothing can be followed: {len(kept)} points in {SHORTEST} frames or more; "
-            "the body must be in all images, sharp, and turn less than about 15 deg from one to "
-            "the next"
-        )
-    index = np.full(len(frames), -1)
-    index[kept] = np.arange(len(kept))
-    return kept, index
-
-
-def _noise(tracker: StereoTracker) -> float:
-    """Return the sigma of a coordinate: of residuals to the map, without what is far off."""
-    residuals = [
-        found.pixels - tracker.pair.project(pose.of(tracker.map.points[found.numbers]))
-        for found, pose in zip(tracker.found, tracker.poses)
-    ]
-    every = np.concatenate([one.ravel() for one in residuals])
-    return float(1.4826 * np.median(np.abs(every))) if every.size else np.nan

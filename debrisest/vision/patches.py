@@ -16,12 +16,12 @@ from debrisest.vision.bundle import Bundle, Sightings
 from debrisest.vision.optical_flow import Image
 from debrisest.vision.stereo_pair import StereoPair
 
-_HALF = 7
+_HALF = 6
 """Half a side of the square that is aligned, px."""
 _ITERATIONS = 8
 _NEIGHBOURS = 9
 """Points that tell the slope of the surface."""
-_LEAST_FACING = 0.3
+_LEAST_FACING = 0.5
 """Cosine between the surface's normal and the line of sight."""
 _LEAST_ALIKE = 0.85
 """Correlation."""
@@ -170,8 +170,9 @@ def _align(
 
 
 def _normal(values: Array) -> Array:
-    """Return squares (n, pixel) with mean 0 and variance 1."""
-    centred = values - values.mean(axis=-1, keepdims=True)
+    """Return squares (n, pixel) without their mean and slope, which are light, of variance 1."""
+    light = np.linalg.qr(np.insert(_grid(), 0, 1.0, axis=-1))[0]
+    centred = values - (values @ light) @ light.T
     return np.asarray(centred / (centred.std(axis=-1, keepdims=True) + 1e-6))
 
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, BoolArray
 from debrisest.recovery.triangulation import triangulate
 from debrisest.sensors import pinhole
 from debrisest.vision.camera import PinholeImage
@@ -74,3 +74,9 @@ def rectified(left: PinholeImage, right: PinholeImage) -> Rectified:
     base = float(-turns[3][0, 3] / projection[0, 0])
     pair = StereoPair(float(projection[0, 0]), projection[:2, 2].copy(), base)
     return Rectified(pair, turns[0], maps)
+
+
+def nearest(mask: BoolArray, maps: tuple[Array, Array]) -> BoolArray:
+    """Return a mask (row, column) as an image is rectified."""
+    cv2 = vision_library("cv2")
+    return np.asarray(cv2.remap(mask.astype(np.uint8), *maps, cv2.INTER_NEAREST) > 0)

@@ -18,7 +18,7 @@ from debrisest.vision.moving import moving
 from debrisest.vision.optical_flow import Image, corners, followed
 from debrisest.vision.rigid_pose import RigidPose, fit, off
 from debrisest.vision.stereo_match import matched, on_one_row
-from debrisest.vision.stereo_pair import Rectified
+from debrisest.vision.stereo_pair import Rectified, nearest
 
 FORWARD_BACKWARD = 0.5
 """Most that a point may be off, px, when it is followed there and back."""
@@ -65,16 +65,12 @@ class StereoTracker:
     def take(self, frames: Image, epoch: int) -> Followed:
         """Return what is found in an epoch of ``frames (time, camera, row, column)``."""
         images = [evened(image) for image in self._rectified.images(frames[epoch])]
-        changes = self._changes(frames, epoch)
+        changes = nearest(moving(frames[:, 0], epoch), self._rectified.maps[0])
         now = self._follow(images) if self.images else Followed()
         now = self._renew(images, now, changes)
         self.images.append(images)
         self.found.append(now)
         return now
-
-    def _changes(self, frames: Image, epoch: int) -> BoolArray:
-        cv2_map = self._rectified.maps[0]
-        return _remapped(moving(frames[:, 0], epoch), cv2_map)
 
     def _follow(self, images: list[Image]) -> Followed:
         """Return those points of the frame before that are found again and agree."""
@@ -173,9 +169,3 @@ def _away(shape: tuple[int, ...], pixels: Array) -> BoolArray:
         free[max(v - reach, 0) : v + reach + 1, max(u - reach, 0) : u + reach + 1] = False
     return free
 
-
-def _remapped(mask: BoolArray, maps: tuple[Array, Array]) -> BoolArray:
-    from debrisest.vision.libraries import vision_library
-
-    cv2 = vision_library("cv2")
-    return np.asarray(cv2.remap(mask.astype(np.uint8), *maps, cv2.INTER_NEAREST) > 0)
