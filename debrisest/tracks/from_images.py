@@ -12,6 +12,7 @@ from debrisest.tracks.types import Camera, Rig, Tracks
 from debrisest.tracks.write_calibration import camera_matrix
 from debrisest.vision.camera import PinholeImage
 from debrisest.vision.image_files import ImageSequence
+from debrisest.vision.pixel_tracker import PixelTracker
 from debrisest.vision.refined import SHORTEST, refined
 from debrisest.vision.stereo_pair import StereoPair, rectified
 from debrisest.vision.stereo_tracker import StereoTracker, follow_all
@@ -46,7 +47,7 @@ def cameras_of(rig: Rig, images: ImageSequence) -> list[PinholeImage]:
         if camera.size not in (None, (width, height)):
             raise UserError(
                 f"{images.source}: images of {width} x {height} pixels, but the calibration is of "
-                f"{camera.size[0]} x {camera.size[1]}"  # type: ignore[index]
+                f"{camera.size[0]} x {camera.size[1]}"
             )
     return [
         PinholeImage((width, height), camera_matrix(camera), _five(camera), turn, shift)
@@ -80,10 +81,35 @@ def stereo_tracks(
     left_out = tracker.counts + Counter(
         {f"seen in fewer than {SHORTEST} frames": lost, "off the motion of the others": found.off}
     )
-    tracks = Tracks(
-        images.source, times, _names(shape[1]), np.arange(len(times)), points, sigma
-    )
+    tracks = Tracks(images.source, times, _names(shape[1]), np.arange(len(times)), points, sigma)
     return Tracked(tracks, shown, left_out, tracker.known_again, found.noise_px)
+
+
+def pixel_tracks(images: ImageSequence, times: Array, each: Callable[[int], None]) -> Tracked:
+    """Return pixels of one camera, as its lens shows them.
+
+    Points that were lost are not known again: that takes a map of the body. Raises `UserError`
+    where too little is found.
+    """
+    tracker = PixelTracker()
+    for epoch in range(len(times)):
+        tracker.take(images.frames[:, 0], epoch)
+        each(epoch)
+    length = np.bincount(np.concatenate([found.numbers for found in tracker.found]))
+    kept = np.flatnonzero(length >= SHORTEST)
+    if len(kept) < _FEWEST:
+        raise UserError(_nothing(images))
+    pixels = np.full((len(times), 1, len(length), 2), np.nan)
+    for epoch, found in enumerate(tracker.found):
+        pixels[epoch, 0, found.numbers] = found.pixels
+    pixels = pixels[:, :, kept]
+    lost = len(length) - len(kept)
+    left_out = tracker.counts + Counter({f"seen in fewer than {SHORTEST} frames": lost})
+    tracks = Tracks(
+        images.source, times, _names(len(kept)), np.arange(len(times)),
+        cameras=images.cameras, pixels=pixels,
+    )  # fmt: skip
+    return Tracked(tracks, pixels, left_out, 0, np.nan)
 
 
 def _names(count: int) -> tuple[str, ...]:

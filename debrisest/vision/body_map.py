@@ -34,9 +34,7 @@ class BodyMap:
     """Direction from the body to the camera then, body axes (point, 3)."""
 
     def add(self, image: Image, pixels: Array, seen: Array, pose: RigidPose) -> IntArray:
-        """Add points that are seen (n, 3), m, camera axes, at pixels (n, 2); return their numbers.
-
-        """
+        """Add points seen (n, 3), m, camera axes, at pixels (n, 2); return their numbers."""
         count, first = len(seen), len(self.points)
         self.points = np.concatenate([self.points, pose.back(seen)])
         self.counts = np.concatenate([self.counts, np.ones(count)])
@@ -90,7 +88,8 @@ class BodyMap:
 
 def _view(seen: Array, pose: RigidPose) -> Array:
     """Return the directions (n, 3), body axes, from points (n, 3), camera axes, to the camera."""
-    return -(seen / np.linalg.norm(seen, axis=-1, keepdims=True)) @ pose.rotation
+    away = seen / np.linalg.norm(seen, axis=-1, keepdims=True)
+    return np.asarray(-away @ pose.rotation)
 
 
 def _mutual(distance: Array, lost: IntArray) -> IntArray:

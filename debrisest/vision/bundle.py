@@ -45,7 +45,8 @@ class Bundle(NamedTuple):
     def seen(self, sightings: Sightings) -> Array:
         """Return the points of sightings (sighting, 3), m, camera axes."""
         turn, body = self.rotation[sightings.epoch], self.points[sightings.point]
-        return np.einsum("sij,sj->si", turn, body) + self.translation[sightings.epoch]
+        seen = np.einsum("sij,sj->si", turn, body) + self.translation[sightings.epoch]
+        return np.asarray(seen)
 
     def residuals(self, pair: StereoPair, sightings: Sightings) -> Array:
         """Return pixels less what is expected (sighting, camera, 2)."""
@@ -81,7 +82,7 @@ def _step(pair: StereoPair, bundle: Bundle, sightings: Sightings) -> tuple[Array
     pose_hold = _summed(by_pose, weight * by_pose, sightings.epoch, epochs)
     pose_pull = _summed(by_pose, weight * residual[..., None], sightings.epoch, epochs)[..., 0]
     point_pull = _summed(by_point, weight * residual[..., None], sightings.point, count)[..., 0]
-    inverse = np.linalg.inv(_steady(point_hold))
+    inverse = np.asarray(np.linalg.inv(_steady(point_hold)))
     across = _blocks(
         np.swapaxes(by_pose, -1, -2) @ (weight * by_point),
         sightings.epoch,
@@ -100,9 +101,7 @@ def _step(pair: StereoPair, bundle: Bundle, sightings: Sightings) -> tuple[Array
     return turned.reshape(-1, 6), moved.reshape(-1, 3)
 
 
-def _derivatives(
-    pair: StereoPair, bundle: Bundle, sightings: Sightings
-) -> tuple[Array, Array]:
+def _derivatives(pair: StereoPair, bundle: Bundle, sightings: Sightings) -> tuple[Array, Array]:
     """Return the derivatives of the pixels (sighting, 4, ...) by poses (6) and by points (3)."""
     seen = bundle.seen(sightings)
     by_seen = pair.derivative(seen).reshape(len(seen), 4, 3)
@@ -132,8 +131,8 @@ def _blocks(blocks: Array, row: IntArray, column: IntArray, shape: tuple[int, in
     _, height, width = blocks.shape
     rows = row[:, None, None] * height + np.arange(height)[:, None]
     columns = column[:, None, None] * width + np.arange(width)
-    places = [np.broadcast_to(one, blocks.shape).ravel() for one in (rows, columns)]
-    return sparse.csr_matrix((blocks.ravel(), places), shape=shape)
+    down, across = (np.broadcast_to(one, blocks.shape).ravel() for one in (rows, columns))
+    return sparse.csr_matrix((blocks.ravel(), (down, across)), shape=shape)
 
 
 def _steady(hold: Array) -> Array:
@@ -143,6 +142,4 @@ def _steady(hold: Array) -> Array:
 
 def _stepped(bundle: Bundle, turned: Array, moved: Array) -> Bundle:
     turn = quaternion.to_matrix(quaternion.exp(turned[:, :3]))
-    return Bundle(
-        turn @ bundle.rotation, bundle.translation + turned[:, 3:], bundle.points + moved
-    )
+    return Bundle(turn @ bundle.rotation, bundle.translation + turned[:, 3:], bundle.points + moved)

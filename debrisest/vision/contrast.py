@@ -18,4 +18,4 @@ def evened(image: Image) -> Image:
     mean = gaussian_filter(grey, _REACH)
     spread = np.sqrt(np.maximum(gaussian_filter(grey**2, _REACH) - mean**2, 0.0))
     even = (grey - mean) / (spread + _LEAST)
-    return np.clip(_MIDDLE + _GAIN * even, 0, 255).astype(np.uint8)
+    return np.asarray(np.clip(_MIDDLE + _GAIN * even, 0, 255), dtype=np.uint8)

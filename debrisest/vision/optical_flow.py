@@ -9,6 +9,10 @@ from debrisest.arrays import Array, BoolArray
 from debrisest.vision.libraries import vision_library
 
 Image = NDArray[np.uint8]
+FORWARD_BACKWARD = 0.5
+"""Most that a point may be off, px, when it is followed there and back."""
+MOST, APART = 400, 8.0
+"""Features that are followed at a time, and their least distance, px."""
 _WINDOW, _LEVELS = 13, 3
 _QUALITY = 0.01
 """Of the best corner's strength, the least that counts."""
@@ -24,7 +28,7 @@ def corners(image: Image, where: BoolArray, apart: float, most: int) -> Array:
     fine = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_MAX_ITER, 20, 0.01)
     refined = cv2.cornerSubPix(image, found.reshape(-1, 1, 2).copy(), (3, 3), (-1, -1), fine)
     moved = np.linalg.norm(refined - found.reshape(-1, 1, 2), axis=-1) < 1.5
-    return np.where(moved, refined[:, 0], found.reshape(-1, 2)).astype(float)
+    return np.asarray(np.where(moved, refined[:, 0], found.reshape(-1, 2)), dtype=float)
 
 
 def followed(
@@ -58,3 +62,12 @@ def _flow(before: Image, after: Image, points: Array, guess: Array) -> tuple[Arr
         flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
     )
     return there[:, 0].astype(float), found[:, 0].astype(bool)
+
+
+def away_from(shape: tuple[int, ...], pixels: Array) -> BoolArray:
+    """Return where an image has none of the points (n, 2) near."""
+    free = np.ones(shape, dtype=bool)
+    reach = int(APART)
+    for u, v in np.rint(pixels).astype(int):
+        free[max(v - reach, 0) : v + reach + 1, max(u - reach, 0) : u + reach + 1] = False
+    return free

@@ -57,7 +57,7 @@ def facing(bundle: Bundle, surface: Slopes, epoch: IntArray, point: IntArray) ->
     turn, body = bundle.rotation[epoch], bundle.points[point]
     seen = np.einsum("nij,nj->ni", turn, body) + bundle.translation[epoch]
     normal = np.einsum("nij,nj->ni", turn, surface.normals[point])
-    return -np.sum(normal * _unit(seen), axis=-1)
+    return np.asarray(-np.sum(normal * _unit(seen), axis=-1))
 
 
 def found_again(
@@ -151,7 +151,7 @@ def _sampled(
 def _align(
     images: list[list[Image]], epoch: IntArray, camera: int, expected: Array, pattern: Array
 ) -> tuple[Array, BoolArray]:
-    """Return where patterns (n, pixel) are (n, 2), looked for about a place, and which are found."""
+    """Return where patterns (n, pixel) are (n, 2), near what is expected, and which are found."""
     side = 2 * _HALF + 1
     even = _normal(pattern)
     slope = np.gradient(even.reshape(-1, side, side), axis=(1, 2))

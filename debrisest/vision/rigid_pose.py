@@ -78,9 +78,7 @@ def _best_triple(
     triples = np.argsort(draws.random((_TRIPLES, len(body))), axis=-1)[:, :3]
     turns = np.stack([wahba(body[one], seen[one]) for one in triples])
     turns = np.where(np.isfinite(turns), turns, np.eye(3))
-    shifts = seen[triples].mean(axis=1) - np.einsum(
-        "kij,kj->ki", turns, body[triples].mean(axis=1)
-    )
+    shifts = seen[triples].mean(axis=1) - np.einsum("kij,kj->ki", turns, body[triples].mean(axis=1))
     shown = pair.project(body @ np.swapaxes(turns, -1, -2) + shifts[:, None])
     distance = np.linalg.norm(shown - pixels, axis=-1).max(axis=-1)
     cost = np.minimum(np.where(np.isfinite(distance), distance, np.inf), gate).sum(axis=-1)

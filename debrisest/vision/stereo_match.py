@@ -31,9 +31,7 @@ def matched(left: Image, right: Image, points: Array, gate: float) -> tuple[Arra
 
 def on_one_row(left: Array, right: Array, gate: float) -> BoolArray:
     """Return which pairs of pixels (n, 2) meet the epipolar condition, right of infinity."""
-    return np.asarray(
-        (np.abs(left[:, 1] - right[:, 1]) < gate) & (left[:, 0] - right[:, 0] > 0.5)
-    )
+    return np.asarray((np.abs(left[:, 1] - right[:, 1]) < gate) & (left[:, 0] - right[:, 0] > 0.5))
 
 
 def _best(left: Image, right: Image, point: Array) -> Array:
@@ -52,4 +50,4 @@ def _best(left: Image, right: Image, point: Array) -> Array:
     others = np.delete(alike, slice(max(column - 4, 0), column + 5), axis=1)
     if not best > _ALIKE or (others.size and others.max() > _UNIQUE * best):
         return np.full(2, np.nan)
-    return np.array([column + _HALF, v - _BAND + row]) + (point - [u, v])
+    return np.asarray([column + _HALF, v - _BAND + row] + (point - [u, v]))

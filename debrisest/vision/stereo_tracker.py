@@ -15,20 +15,25 @@ from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.vision.body_map import BodyMap
 from debrisest.vision.contrast import evened
 from debrisest.vision.moving import moving
-from debrisest.vision.optical_flow import Image, corners, followed
+from debrisest.vision.optical_flow import (
+    APART,
+    FORWARD_BACKWARD,
+    MOST,
+    Image,
+    away_from,
+    corners,
+    followed,
+)
 from debrisest.vision.rigid_pose import RigidPose, fit, off
 from debrisest.vision.stereo_match import matched, on_one_row
 from debrisest.vision.stereo_pair import Rectified, nearest
 
-FORWARD_BACKWARD = 0.5
-"""Most that a point may be off, px, when it is followed there and back."""
 EPIPOLAR = 1.0
 """Most difference of the rows, px."""
 RIGID = 1.2
 """Most that a point may be off from the pose of all others, px."""
 _STILL, _MOVES = 1.0, 3.0
 """A point that moves less, px, while the body moves it by more, stands still."""
-_MOST, _APART = 400, 8.0
 _AGREE = 6
 """Points known again that must agree on a pose for it to be taken."""
 
@@ -116,8 +121,8 @@ class StereoTracker:
 
     def _renew(self, images: list[Image], now: Followed, changes: BoolArray) -> Followed:
         """Return the points and new ones, as far as there are too few."""
-        free = changes & _away(images[0].shape, now.pixels[:, 0])
-        left = corners(images[0], free, _APART, _MOST - len(now.numbers))
+        free = changes & away_from(images[0].shape, now.pixels[:, 0])
+        left = corners(images[0], free, APART, MOST - len(now.numbers))
         right, found = matched(images[0], images[1], left, FORWARD_BACKWARD)
         found &= on_one_row(left, right, EPIPOLAR)
         pixels = np.stack([left, right], axis=1)[found]
@@ -159,13 +164,3 @@ def follow_all(
     for epoch in range(len(frames)):
         tracker.take(frames, epoch)
         each(epoch)
-
-
-def _away(shape: tuple[int, ...], pixels: Array) -> BoolArray:
-    """Return where an image has no point nearer than a distance."""
-    free = np.ones(shape, dtype=bool)
-    reach = int(_APART)
-    for u, v in np.rint(pixels).astype(int):
-        free[max(v - reach, 0) : v + reach + 1, max(u - reach, 0) : u + reach + 1] = False
-    return free
-
