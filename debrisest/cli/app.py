@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from debrisest import __version__
-from debrisest.cli import estimate, estimates, measured, render, scenarios, show, stages
+from debrisest.cli import estimate, estimates, measured, render, scenarios, show, stages, track
 from debrisest.cli.exits import Commands
 
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -26,6 +26,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "estimate": estimate.estimate,
     "estimates": estimates.estimates,
     "render": render.render,
+    "track": track.track,
     "validate": scenarios.validate,
     "schema": scenarios.schema,
     "init": scenarios.init,

@@ -19,7 +19,9 @@ from debrisest.vision.libraries import vision_library
 
 _Item = TypeVar("_Item")
 _AT_ONCE = 20
-_NEXT_FRAMES = 3
+_PEAK = 0.003
+"""Of features: half of what is usual, since bodies are dark where the sun does not reach."""
+_NEXT_FRAMES = 4
 _LOOP = 3
 """Each frame of this many is matched with all others of them."""
 _LEAST_SHARE = 0.5
@@ -62,6 +64,7 @@ def _features(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int) 
     extraction = colmap.FeatureExtractionOptions(num_threads=_threads(), use_gpu=False)
     extraction.sift.max_num_features = 2000
     extraction.sift.first_octave = 0
+    extraction.sift.peak_threshold = _PEAK
     for camera, k in enumerate(rig.matrix):
         names = [image_name(camera, frame) for frame in range(frames)]
         for number, some in enumerate(_portions(names, _AT_ONCE)):

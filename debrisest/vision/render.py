@@ -11,7 +11,7 @@ from debrisest.vision.camera import PinholeImage
 from debrisest.vision.room import Room
 from debrisest.vision.surface import Surface
 
-_WHITE = 230.0
+_WHITE = 255.0
 """Grey of a white surface that faces the sun."""
 _SPECULAR, _SHARPNESS = 0.1, 20
 SAMPLES = (np.indices((2, 2)).reshape(2, 4).T - 0.5) * 0.5

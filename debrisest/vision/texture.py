@@ -5,7 +5,7 @@ from scipy.ndimage import map_coordinates
 
 from debrisest.arrays import Array
 
-_OCTAVES = 4
+_OCTAVES = 5
 _PERIOD = 32
 _CONTRAST = 3.0
 """Of the edges between bright and dark."""
@@ -23,5 +23,5 @@ class SolidNoise:
         total = np.zeros(len(points))
         for octave, lattice in enumerate(self._lattices):
             place = (points * (2.0**octave / self._grain) + 0.37 * octave).T
-            total += 0.7**octave * map_coordinates(lattice, place, order=1, mode="grid-wrap")
+            total += 0.75**octave * map_coordinates(lattice, place, order=1, mode="grid-wrap")
         return np.asarray(0.5 + 0.5 * np.tanh(_CONTRAST * total))
