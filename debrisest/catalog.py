@@ -15,10 +15,12 @@ from debrisest.parts.filters.bound import Efficient, LandmarkBound, LinearisedAt
 from debrisest.parts.filters.kalman import Extended, Unscented
 from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
 from debrisest.parts.filters.replay import Replay
+from debrisest.parts.filters.surface import Surface
 from debrisest.parts.recoveries.basis_pursuit import BasisPursuit
 from debrisest.parts.recoveries.direction_cosines import DirectionCosines
 from debrisest.parts.recoveries.line_spectrum import LineSpectrumRecovery
 from debrisest.parts.recoveries.pixel_pose import PixelPose
+from debrisest.parts.recoveries.structure import StructureFromMotion
 from debrisest.parts.recoveries.triangulation import Triangulation
 from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
 from debrisest.parts.sensors.attitude_knowledge import AttitudeKnowledge
@@ -61,6 +63,7 @@ from debrisest.parts.truth.torque_free import TorqueFree
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.problems.camera_range.redundant import CameraRangeRedundant
 from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels
+from debrisest.problems.shape.problem import ConstantDensityShape
 from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditive
 from debrisest.problems.tumbling.attitude import TumblingAttitude
 from debrisest.problems.tumbling.motion import TumblingMotion
@@ -92,7 +95,14 @@ CATALOG: dict[str, list[type[Part]]] = {
     ],
     "measured": [Datasets, MeasuredTracks, MeasuredPoses],
     "starts": [DrawnPose, DrawnOrbit, DrawnShape, GivenGuess],
-    "recovery": [BasisPursuit, DirectionCosines, LineSpectrumRecovery, PixelPose, Triangulation],
+    "recovery": [
+        BasisPursuit,
+        DirectionCosines,
+        LineSpectrumRecovery,
+        PixelPose,
+        Triangulation,
+        StructureFromMotion,
+    ],
     "problem": [
         TumblingAttitude,
         TumblingPoints,
@@ -102,6 +112,7 @@ CATALOG: dict[str, list[type[Part]]] = {
         CameraRangeRedundant,
         CameraRangeMinimal,
         OrbitFromPixels,
+        ConstantDensityShape,
     ],
     "start": [FirstSamples, FirstPoints, Guess, FirstImage],
     "filter": [
@@ -117,5 +128,6 @@ CATALOG: dict[str, list[type[Part]]] = {
         LandmarkBatch,
         LandmarkFilter,
         LandmarkBound,
+        Surface,
     ],
 }

@@ -59,11 +59,11 @@ def dense_cloud(views: Sequence[DepthView], cell: float) -> OrientedCloud:
 def _points(found: DepthView) -> tuple[Array, Array]:
     """Return points (point, 3) and unit normals of a depth image in the axes of the structure."""
     view, depth = found
-    depth = _smoothed(depth)
+    smooth = _smoothed(depth)
     v, u = np.indices(depth.shape)
     focal, centre = view.matrix[0, 0], view.matrix[:2, 2]
     rays = np.stack([(u - centre[0]) / focal, (v - centre[1]) / focal, np.ones_like(u)], axis=-1)
-    space = rays * depth[..., None]
+    space = rays * smooth[..., None]
     along_u, along_v = (np.full_like(space, np.nan) for _ in range(2))
     n = _STEP_PX
     along_u[:, n:-n] = space[:, 2 * n :] - space[:, : -2 * n]

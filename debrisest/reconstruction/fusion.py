@@ -50,23 +50,23 @@ def grid_about(points: Array, voxel: float) -> Grid:
 
 
 def outside_silhouettes(
-    grid: Grid, masks: BoolArray, matrix: Array, structure: Structure
+    points: Array | Values, masks: BoolArray, matrix: Array, structure: Structure
 ) -> Values:
-    """Return how far each voxel lies outside of the silhouettes (voxel,), m; negative: inside.
+    """Return how far points (n, 3) lie outside of the silhouettes (n,), m; negative: inside.
 
     The value is the third largest over all views of ``masks (time, row, column)``, those of the
     first camera, whose ``matrix (3, 3)`` is given.
     """
-    points = grid.points
+    points = points.astype(np.float32)
     worst = np.full((_DOUBTS, len(points)), -np.inf, dtype=np.float32)
     for frame in structure.registered:
         rotation, shift = structure.rotation[frame], structure.translation[frame]
         seen = points @ rotation.T.astype(np.float32) + shift.astype(np.float32)
         pixel, inside = _pixels(seen, matrix, masks.shape[1:])
         away = _signed_distance(masks[frame])[pixel] * seen[:, 2] / np.float32(matrix[0, 0])
-        away[~inside] = -np.inf
+        away[~inside] = np.where(seen[~inside, 2] > 0, -np.inf, np.inf)
         _insert(worst, away)
-    return worst[-1]
+    return np.asarray(worst[-1])
 
 
 def _insert(worst: Values, values: Values) -> None:
@@ -98,34 +98,39 @@ def _pixels(
     return (row, np.where(inside, u, 0).astype(np.int64)), np.asarray(inside)
 
 
-def distance_to_surfaces(grid: Grid, views: Sequence[DepthView]) -> tuple[Values, Values]:
-    """Return the mean distance (voxel,) before the surfaces, in truncations, and its weight.
+def distance_to_surfaces(
+    points: Values, views: Sequence[DepthView], reach: float
+) -> tuple[Values, Values]:
+    """Return the mean distance (n,) of points (n, 3) before the surfaces, and its weight.
 
-    It is negative within the body and counts no further than one truncation behind a surface.
+    It is in units of ``reach``, m, negative within the body; further than one of them behind a
+    surface a point does not count.
     """
-    points = grid.points
     total, weight = np.zeros((2, len(points)), dtype=np.float32)
-    reach = np.float32(_TRUNCATED * grid.voxel)
     for view, depth in views:
-        seen = view.seen(points).astype(np.float32)
+        seen = view.seen(points.astype(np.float64)).astype(np.float32)
         pixel, inside = _pixels(seen, view.matrix, depth.shape)
         ahead = (depth[pixel] - seen[:, 2]) / reach
         counts = inside & (ahead > -1.0)
         total += np.where(counts, np.minimum(ahead, 1.0), 0.0)
         weight += counts
-    return total / np.maximum(weight, 1.0), weight
+    mean = total / np.maximum(weight, np.float32(1.0))
+    return mean.astype(np.float32), weight
 
 
-def fused_mesh(
-    grid: Grid, outside: Values, ahead: Values, weight: Values
-) -> tuple[Array, IntArray]:
+def fused_mesh(grid: Grid, outside: Values, views: Sequence[DepthView]) -> tuple[Array, IntArray]:
     """Return vertices and triangles, counterclockwise from outside, of the fused surface.
 
+    ``outside`` is what `outside_silhouettes` tells of the grid's points.
     Pieces of less than a hundredth of the largest, and hollows, are left out.
     """
     measure = vision_library("skimage.measure")
-    carved = np.clip(outside / (_TRUNCATED * grid.voxel), -1.0, 1.0)
-    field = np.maximum(carved, np.where(weight > 0, ahead, -1.0)).reshape(grid.shape)
+    reach = _TRUNCATED * grid.voxel
+    field = np.clip(outside / reach, -1.0, 1.0)
+    left = np.flatnonzero(field < 1.0)
+    ahead, weight = distance_to_surfaces(grid.points[left], views, reach)
+    field[left] = np.maximum(field[left], np.where(weight > 0, ahead, -1.0))
+    field = field.reshape(grid.shape)
     solid = _large(field < 0.0)
     field = np.where(solid, np.minimum(field, -1e-3), np.maximum(field, 1e-3))
     field = np.pad(field, 1, constant_values=1.0)

@@ -52,11 +52,9 @@ class Structure(NamedTuple):
         """Return the frames that found a place."""
         return np.flatnonzero(np.isfinite(self.translation[:, 0]))
 
-    def scaled(self, factor: float, sigma: float) -> "Structure":
-        """Return the structure with another scale, whose relative 1-sigma is given."""
-        return self._replace(
-            translation=self.translation * factor, points=self.points * factor, scale_sigma=sigma
-        )
+    def of(self, chosen: BoolArray) -> "Structure":
+        """Return the structure with the chosen points (point,) only."""
+        return self._replace(points=self.points[chosen], seen=self.seen[:, chosen])
 
 
 def structure_from_motion(

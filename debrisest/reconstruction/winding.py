@@ -30,6 +30,13 @@ def faces_on_edges(triangles: IntArray) -> IntArray:
     return np.unique(np.sort(edges_of(triangles), axis=1), axis=0, return_counts=True)[1]
 
 
+def pieces_of(triangles: IntArray) -> IntArray:
+    """Return the number of the connected piece that each triangle belongs to (triangle,)."""
+    joined = (np.ones(3 * len(triangles)), edges_of(triangles).T)
+    label = connected_components(coo_array(joined, shape=2 * (triangles.max() + 1,)))[1]
+    return np.unique(label[triangles[:, 0]], return_inverse=True)[1].astype(np.int64)
+
+
 def wound_alike(triangles: IntArray) -> Wound:
     """Turn triangles until neighbours agree; every edge has just two of them.
 
