@@ -9,7 +9,17 @@ from typing import Annotated
 import typer
 
 from debrisest import __version__
-from debrisest.cli import estimate, estimates, measured, render, scenarios, show, stages, track
+from debrisest.cli import (
+    estimate,
+    estimates,
+    measured,
+    reconstruct,
+    render,
+    scenarios,
+    show,
+    stages,
+    track,
+)
 from debrisest.cli.exits import Commands
 
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -27,6 +37,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "estimates": estimates.estimates,
     "render": render.render,
     "track": track.track,
+    "reconstruct": reconstruct.reconstruct,
     "validate": scenarios.validate,
     "schema": scenarios.schema,
     "init": scenarios.init,

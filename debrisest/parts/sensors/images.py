@@ -1,6 +1,8 @@
 """Cameras that give images: one, or a stereo pair, of a textured body in sunlight."""
 
 from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -12,6 +14,7 @@ from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
 from debrisest.roles import NonNegative, Positive, SimulationPart, Vector3
 from debrisest.vision.camera import PinholeImage
+from debrisest.vision.image_files import read_images, write_video
 from debrisest.vision.render import SAMPLES, Light, Pose, Renderer, grey_levels
 from debrisest.vision.room import Room
 from debrisest.vision.solids import Solid
@@ -50,6 +53,8 @@ class Images(SimulationPart):
     background: Literal["black", "room"] = "black"
     room_m: Positive = Field(60.0, description="half a side of the room about the first camera")
 
+    video: bool = Field(False, description="let the images pass through a compressed video file")
+
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return images (run, time, camera, row, column) and what is known of the cameras."""
         cameras = self._cameras()
@@ -64,7 +69,8 @@ class Images(SimulationPart):
             "rig_translation": [camera.translation for camera in cameras],
         }
         each = {name: np.array([values] * len(runs)) for name, values in known.items()}
-        return each | {"measured_image": np.stack(frames, axis=1)}
+        images = np.stack(frames, axis=1)
+        return each | {"measured_image": _through_video(images) if self.video else images}
 
     def _cameras(self) -> list[PinholeImage]:
         centre = 0.5 * (self.width_px - 1), 0.5 * (self.height_px - 1)
@@ -107,3 +113,14 @@ class Images(SimulationPart):
         turn = quaternion.exp(when[:, None] * data["true_rate_b"][run, epoch])
         q = quaternion.multiply(data["true_q_ib"][run, epoch], turn)
         return Pose(q, np.broadcast_to(data["true_position"][run, epoch], (count, 3)))
+
+
+def _through_video(images: Any) -> Any:
+    """Return images (run, time, camera, row, column) as they come back from MP4 files."""
+    shown = np.empty_like(images)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "video.mp4"
+        for run, camera in np.ndindex(images.shape[0], images.shape[2]):
+            write_video(path, images[run, :, camera], 25.0)
+            shown[run, :, camera] = read_images(path).frames[:, 0]
+    return shown

@@ -16,6 +16,7 @@ from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots import (
+    body,
     covariance_trace,
     error_over_time,
     histograms,
@@ -56,6 +57,9 @@ FIGURES: dict[str, Kind] = {
     "recovered_quaternion": Kind(
         recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
     ),
+    "cloud": Kind(body.cloud, body.CLOUD),
+    "mesh": Kind(body.mesh, body.MESH),
+    "coverage_map": Kind(body.coverage, body.MESH),
     "rates": Kind(rates.rates, ("rate_b", "rate_b_sigma", "moments_b")),
     "motion": Kind(motion.motion, motion.DATASETS),
     "error_over_time": Kind(
