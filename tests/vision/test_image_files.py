@@ -114,5 +114,5 @@ def test_what_is_wrong_with_a_video_is_told(tmp_path: Path) -> None:
         read_images(tmp_path / "film.txt")
     with pytest.raises(UserError, match="no such folder or file"):
         read_images(tmp_path / "none.avi")
-    with pytest.raises(UserError, match="written as .mp4 or .avi"):
+    with pytest.raises(UserError, match="videos are written as"):
         write_video(tmp_path / "film.gif", frames, 10.0)
