@@ -33,7 +33,7 @@ from debrisest.parts.sensors.pinhole_camera import PinholeCamera
 from debrisest.parts.sensors.pointing_control import PointingControl
 from debrisest.parts.sensors.stereo_camera import StereoCamera
 from debrisest.parts.sources.datasets import Datasets
-from debrisest.parts.sources.images import MeasuredImages
+from debrisest.parts.sources.image_files import MeasuredImages
 from debrisest.parts.sources.poses import MeasuredPoses
 from debrisest.parts.sources.tracks import MeasuredTracks
 from debrisest.parts.starts.drawn_orbit import DrawnOrbit

@@ -142,7 +142,7 @@ def _scenario(
             f"--camera, or put it there as {_CALIBRATION}"
         )
     measured = {
-        "kind": "images",
+        "kind": "image_files",
         "folder": relative_to(folder, str(images)),
         "camera": relative_to(folder, str(calibration)),
     }
@@ -190,9 +190,9 @@ def _files(scenario: "LoadedScenario", folder: Path, data: "Data") -> list[Path]
     from debrisest.show.plots.draw import draw_all
 
     paths = []
-    if "cloud_point" in data:
+    if "cloud_point_r" in data:
         paths.append(folder / "cloud.ply")
-        points = data["cloud_point"][np.isfinite(data["cloud_point"][:, 0])]
+        points = data["cloud_point_r"][np.isfinite(data["cloud_point_r"][:, 0])]
         write_mesh(paths[-1], points, np.empty((0, 3), dtype=np.int64))
     if "vertex_r" in data:
         paths.append(folder / "mesh.obj")

@@ -96,8 +96,11 @@ def reconstructed_body(
     chosen = method or ("poisson" if fill > COMPACT else "fusion")
     if chosen == "poisson":
         fine = _cloud(views, outer, extent / _CELLS[1])
-        coarse, mesh = (_poisson(*each) for each in zip((cloud, fine), _DEPTH))
-    else:
+        try:
+            coarse, mesh = (_poisson(*each) for each in zip((cloud, fine), _DEPTH))
+        except ValueError:
+            chosen = "fusion"
+    if chosen == "fusion":
         coarse, mesh = rough, _fused(views, outer, extent / _CELLS[1])
     cell = extent / _CELLS[1]
     seen = _seen(mesh, cloud, _NEAR * extent)

@@ -39,13 +39,13 @@ def mesh_data(vertices: Array, triangles: IntArray, density: float, mass: float 
         "principal_axes_r": axes * np.sign(np.linalg.det(axes)),
         "moment_ratios": inertia_ratios.ratios(moments),
         "vertex_r": mesh.vertices,
-        "triangle": mesh.triangles.astype(np.float64),
+        "triangle_r": mesh.triangles.astype(np.float64),
     }
 
 
 def body_mesh(data: Data) -> tuple[Array, IntArray]:
     """Return vertices and triangles of a body's datasets, without what fills them up."""
-    triangles = data["triangle"]
+    triangles = data["triangle_r"]
     kept = triangles[np.isfinite(triangles[:, 0])].astype(np.int64)
     vertices = data["vertex_r"]
     return vertices[np.isfinite(vertices[:, 0])], kept

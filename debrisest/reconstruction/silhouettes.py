@@ -14,6 +14,9 @@ _DARK_GREY = 12.0
 _BACKGROUND_SHARE = 0.25
 """Of the frames in which a pixel has to show the same, for that to be the background."""
 _BORDER_PX = 4
+_EDGE_PX = 3
+_BRIGHT_GREY = 60.0
+"""Contrasts beyond this, as of a pixel that is always the body's, count as this."""
 
 Frames = NDArray[np.uint8]
 
@@ -31,12 +34,11 @@ def _of_camera(frames: Frames) -> BoolArray:
     smooth = np.stack([ndimage.gaussian_filter(f, _BLUR_PX, output=np.float32) for f in frames])
     border = _border(smooth)
     if np.median(border) < _DARK_GREY:
-        level = float(np.median(border)) + _threshold(border)
-        found = smooth > level
+        contrast, level = smooth - float(np.median(border)), _threshold(border)
     else:
         background, sigma = _background(smooth)
-        found = np.abs(smooth - background) > np.maximum(_SIGMAS * sigma, _LEAST_GREY)
-    masks = np.stack([_largest(each) for each in found])
+        contrast, level = np.abs(smooth - background), max(_SIGMAS * sigma, _LEAST_GREY)
+    masks = np.stack([_sharp(_largest(each > level), each) for each in contrast])
     if not masks.any():
         raise ValueError("no body stands out from what is behind it, neither bright nor moving")
     return masks
@@ -68,6 +70,14 @@ def _background(smooth: NDArray[np.float32]) -> tuple[Array, float]:
     sigma = float(np.median(np.abs(smooth - level)[:, :_BORDER_PX])) * 1.4826
     always_body = narrow > 4.0 * max(usual, sigma)
     return np.where(always_body, -1e3, level).astype(np.float64), sigma
+
+
+def _sharp(mask: BoolArray, contrast: Array) -> BoolArray:
+    """Return the mask cut back, along its edge, to where the contrast is half of that nearby."""
+    edge = mask & ~ndimage.binary_erosion(mask, iterations=_EDGE_PX)
+    nearby = ndimage.maximum_filter(contrast, size=2 * _EDGE_PX + 1)
+    kept = mask & (~edge | (contrast > 0.5 * np.minimum(nearby, _BRIGHT_GREY)))
+    return np.asarray(ndimage.binary_closing(kept, iterations=1) | kept)
 
 
 def _largest(mask: BoolArray) -> BoolArray:

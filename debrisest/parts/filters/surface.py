@@ -41,7 +41,7 @@ class Surface(FilterPart):
         """Return volume, centre and inertia of density one, the same at all epochs, and meshes."""
         runs, epochs = given.measured.shape[:2]
         bodies = [self._body(model, run) for run in range(runs)]
-        scaled = np.isfinite(model.data["scale_sigma"]) | (model.known_length is not None)
+        scaled = np.isfinite(model.data["scale_spread"]) | (model.known_length is not None)
         told = np.array([body.coverage >= LEAST_COVERAGE for body in bodies])
         blank = np.where(told, 1.0, np.nan)[:, None]
         state = np.stack([packed(body.properties) for body in bodies]) * blank
@@ -71,7 +71,7 @@ def _meshes(bodies: list[Body]) -> Data:
     triangles = max(len(body.mesh.triangles) for body in bodies)
     return {
         "vertex_r": np.stack([padded(body.mesh.vertices, vertices) for body in bodies]),
-        "triangle": np.stack(
+        "triangle_r": np.stack(
             [padded(body.mesh.triangles.astype(np.float64), triangles) for body in bodies]
         ),
         "triangle_seen": np.stack(
@@ -90,4 +90,6 @@ def _why(method: Method, fill: float) -> str:
     filled = f"the body fills {fill:.0%} of its convex hull"
     if method == "poisson":
         return f"screened Poisson surface of the dense cloud: {filled}"
+    if fill > COMPACT:
+        return f"silhouettes fused with depth: {filled}, but its Poisson surface does not close"
     return f"silhouettes fused with depth: {filled}, less than the {COMPACT:.0%} of a compact one"

@@ -20,9 +20,9 @@ QUANTITIES = {
         ("run", "time_s", "row", "column"), "1", "turns the structure's axes into the camera's"
     ),
     "view_translation": Quantity(TIME_VECTOR, "m", "origin of these axes in the camera's"),
-    "cloud_point": Quantity(("run", "cloud_point", "axis"), "m", "points of the body's surface"),
+    "cloud_point_r": Quantity(("run", "cloud_point", "axis"), "m", "points of the body's surface"),
     "cloud_seen": Quantity(("run", "time_s", "cloud_point"), "1", "which frames see a point"),
-    "scale_sigma": Quantity(RUN, "1", "relative 1-sigma of the scale; infinite: no scale"),
+    "scale_spread": Quantity(RUN, "1", "relative 1-sigma of the scale; infinite: no scale"),
     "reprojection": Quantity(RUN, "px", "mean distance of features from where they should be"),
     "coverage": Quantity(RUN, "1", "share of epochs with an attitude", "1"),
     "pieces": Quantity(RUN, "1", "pieces of uninterrupted samples", "1"),

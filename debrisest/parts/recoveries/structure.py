@@ -33,8 +33,8 @@ class StructureFromMotion(RecoveryPart):
         *("rig_rotation", "rig_translation"),
     )
     gives = (
-        *("view_rotation", "view_translation", "cloud_point", "cloud_seen"),
-        *("scale_sigma", "reprojection"),
+        *("view_rotation", "view_translation", "cloud_point_r", "cloud_seen"),
+        *("scale_spread", "reprojection"),
     )
     kind: Literal["structure_from_motion"]
 
@@ -46,11 +46,11 @@ class StructureFromMotion(RecoveryPart):
         return {
             "view_rotation": np.stack([each.rotation for each in found]),
             "view_translation": np.stack([each.translation for each in found]),
-            "cloud_point": np.stack([padded(each.points, most) for each in found]),
+            "cloud_point_r": np.stack([padded(each.points, most) for each in found]),
             "cloud_seen": np.stack(
                 [padded(each.seen.T.astype(np.float64), most).T for each in found]
             ),
-            "scale_sigma": np.array([each.scale_sigma for each in found]),
+            "scale_spread": np.array([each.scale_sigma for each in found]),
             "reprojection": np.array([each.reprojection_px for each in found]),
             "status": np.array([_SCALED if scaled else _UNSCALED] * len(found)),
         }

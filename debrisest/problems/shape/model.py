@@ -51,13 +51,13 @@ def seen(data: Data, run: int) -> tuple[Frames, BoolArray, Rig]:
 
 def structure_of(data: Data, run: int) -> Structure:
     """Return the stored structure of a run."""
-    points = data["cloud_point"][run]
+    points = data["cloud_point_r"][run]
     there: Array = np.isfinite(points[:, 0])
     return Structure(
         rotation=data["view_rotation"][run],
         translation=data["view_translation"][run],
         points=points[there],
         seen=data["cloud_seen"][run][:, there] == 1.0,
-        scale_sigma=float(data["scale_sigma"][run]),
+        scale_sigma=float(data["scale_spread"][run]),
         reprojection_px=float(data["reprojection"][run]),
     )

@@ -26,7 +26,7 @@ class ConstantDensityShape(ProblemPart):
 
     needs = (
         *("measured_image", "camera_matrix", "lens_distortion", "rig_rotation"),
-        *("rig_translation", "view_rotation", "view_translation", "cloud_point", "scale_sigma"),
+        *("rig_translation", "view_rotation", "view_translation", "cloud_point_r", "scale_spread"),
     )
     model_kind = "shape_model"
     kind: Literal["constant_density_shape"]

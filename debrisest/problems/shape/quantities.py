@@ -18,7 +18,7 @@ QUANTITIES = {
     "principal_axes_r": Quantity(_TENSOR, "1", "principal axes, as columns"),
     "body_mass": Quantity(RUN, "kg", "mass of the body"),
     "vertex_r": Quantity(("run", "vertex", "axis"), "m", "corners of the mesh, structure's axes"),
-    "triangle": Quantity(("run", "triangle", "corner"), "1", "its triangles, counterclockwise"),
+    "triangle_r": Quantity(("run", "triangle", "corner"), "1", "its triangles, counterclockwise"),
     "triangle_seen": Quantity(("run", "triangle"), "1", "whether an image shows the triangle"),
     "mesh_method": Quantity(RUN, "", "how the mesh was made, and why, in words"),
     "mended": Quantity(RUN, "", "what was wrong with the mesh, in words"),

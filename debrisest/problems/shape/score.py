@@ -43,7 +43,7 @@ def _of_run(data: Data, run: int) -> dict[str, float]:
 
 
 def _mesh(data: Data, run: int) -> tuple[Array, IntArray]:
-    vertices, triangles = data["vertex_r"][run], data["triangle"][run]
+    vertices, triangles = data["vertex_r"][run], data["triangle_r"][run]
     kept = np.isfinite(triangles[:, 0])
     return vertices[np.isfinite(vertices[:, 0])], triangles[kept].astype(np.int64)
 

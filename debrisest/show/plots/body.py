@@ -11,15 +11,15 @@ from debrisest.show.plots.axes import heading
 from debrisest.show.plots.space import same_scale, spatial_axes
 from debrisest.show.plots.style import BLUE, GREY, INK, VERMILION, WIDTH, styled
 
-CLOUD = ("cloud_point", "cloud_seen")
-MESH = ("vertex_r", "triangle", "triangle_seen", "principal_axes_r")
+CLOUD = ("cloud_point_r", "cloud_seen")
+MESH = ("vertex_r", "triangle_r", "triangle_seen", "principal_axes_r")
 _SUN = np.array([0.4, -0.5, 0.77])
 
 
 @styled
 def cloud(data: Data, context: str) -> Figure:
     """Draw ``cloud_point (point, 3)``, darker where more frames see a point."""
-    points = data["cloud_point"]
+    points = data["cloud_point_r"]
     kept = np.isfinite(points[:, 0])
     seen = np.nansum(data["cloud_seen"], axis=0)[kept]
     figure, top, axes = _space()
@@ -67,7 +67,7 @@ def _frame(axes: Any, points: Array) -> None:
 
 
 def _corners(data: Data) -> Array:
-    triangles = data["triangle"]
+    triangles = data["triangle_r"]
     kept = triangles[np.isfinite(triangles[:, 0])].astype(np.int64)
     return np.asarray(data["vertex_r"][kept])
 
