@@ -15,10 +15,12 @@ from debrisest.parts.filters.bound import Efficient, LandmarkBound, LinearisedAt
 from debrisest.parts.filters.kalman import Extended, Unscented
 from debrisest.parts.filters.landmarks import LandmarkBatch, LandmarkFilter
 from debrisest.parts.filters.replay import Replay
+from debrisest.parts.filters.surface import Surface
 from debrisest.parts.recoveries.basis_pursuit import BasisPursuit
 from debrisest.parts.recoveries.direction_cosines import DirectionCosines
 from debrisest.parts.recoveries.line_spectrum import LineSpectrumRecovery
 from debrisest.parts.recoveries.pixel_pose import PixelPose
+from debrisest.parts.recoveries.structure import StructureFromMotion
 from debrisest.parts.recoveries.triangulation import Triangulation
 from debrisest.parts.sensors.angular_acceleration import AngularAcceleration
 from debrisest.parts.sensors.attitude_knowledge import AttitudeKnowledge
@@ -26,10 +28,12 @@ from debrisest.parts.sensors.attitude_sensor import AttitudeSensor
 from debrisest.parts.sensors.camera_range import CameraRange
 from debrisest.parts.sensors.detections import Detections
 from debrisest.parts.sensors.feature_points import FeaturePoints
+from debrisest.parts.sensors.images import Images
 from debrisest.parts.sensors.pinhole_camera import PinholeCamera
 from debrisest.parts.sensors.pointing_control import PointingControl
 from debrisest.parts.sensors.stereo_camera import StereoCamera
 from debrisest.parts.sources.datasets import Datasets
+from debrisest.parts.sources.image_files import MeasuredImages
 from debrisest.parts.sources.poses import MeasuredPoses
 from debrisest.parts.sources.rates import MeasuredRates
 from debrisest.parts.sources.tracks import MeasuredTracks
@@ -55,10 +59,13 @@ from debrisest.parts.truth.random_tumble import RandomTumble
 from debrisest.parts.truth.rigid_points import RigidPoints
 from debrisest.parts.truth.satellite import Satellite
 from debrisest.parts.truth.seen_from_leader import SeenFromLeader
+from debrisest.parts.truth.still import Still
+from debrisest.parts.truth.textured_body import TexturedBody
 from debrisest.parts.truth.torque_free import TorqueFree
 from debrisest.problems.camera_range.minimal import CameraRangeMinimal
 from debrisest.problems.camera_range.redundant import CameraRangeRedundant
 from debrisest.problems.orbit_from_pixels.problem import OrbitFromPixels
+from debrisest.problems.shape.problem import ConstantDensityShape
 from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditive
 from debrisest.problems.tumbling.attitude import TumblingAttitude
 from debrisest.problems.tumbling.motion import TumblingMotion
@@ -79,10 +86,10 @@ def required_keys(kind: str) -> set[str]:
 
 
 CATALOG: dict[str, list[type[Part]]] = {
-    "target": [RigidPoints, RandomPoints, RandomBox, RandomRigidBody],
+    "target": [RigidPoints, RandomPoints, RandomBox, RandomRigidBody, TexturedBody],
     "orbit": [KeplerOrbit, PerturbedOrbit],
     "motion": [TorqueFree, GravityGradient, SeenFromLeader, RandomTumble, RandomTorqueFree],
-    "observers": [Hold, Drift, Satellite, ClosedEllipse],
+    "observers": [Hold, Drift, Satellite, ClosedEllipse, Still],
     "sensors": [
         FeaturePoints,
         StereoCamera,
@@ -93,10 +100,18 @@ CATALOG: dict[str, list[type[Part]]] = {
         AttitudeSensor,
         Detections,
         CameraRange,
+        Images,
     ],
-    "measured": [Datasets, MeasuredTracks, MeasuredPoses, MeasuredRates],
+    "measured": [Datasets, MeasuredTracks, MeasuredPoses, MeasuredRates, MeasuredImages],
     "starts": [DrawnPose, DrawnOrbit, DrawnShape, GivenGuess],
-    "recovery": [BasisPursuit, DirectionCosines, LineSpectrumRecovery, PixelPose, Triangulation],
+    "recovery": [
+        BasisPursuit,
+        DirectionCosines,
+        LineSpectrumRecovery,
+        PixelPose,
+        Triangulation,
+        StructureFromMotion,
+    ],
     "problem": [
         TumblingAttitude,
         TumblingPoints,
@@ -106,6 +121,7 @@ CATALOG: dict[str, list[type[Part]]] = {
         CameraRangeRedundant,
         CameraRangeMinimal,
         OrbitFromPixels,
+        ConstantDensityShape,
     ],
     "start": [FirstSamples, FirstPoints, Guess, FirstImage],
     "filter": [
@@ -121,5 +137,6 @@ CATALOG: dict[str, list[type[Part]]] = {
         LandmarkBatch,
         LandmarkFilter,
         LandmarkBound,
+        Surface,
     ],
 }

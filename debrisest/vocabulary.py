@@ -10,6 +10,7 @@ from debrisest.parts.truth.quantities import QUANTITIES as TRUTH
 from debrisest.problems import quantities as shared
 from debrisest.problems.camera_range import quantities as camera_range
 from debrisest.problems.orbit_from_pixels import quantities as orbit_from_pixels
+from debrisest.problems.shape import quantities as shape
 from debrisest.problems.stereo_pose import quantities as stereo_pose
 from debrisest.problems.tumbling import quantities as tumbling
 from debrisest.quantity import RUN, Quantity
@@ -35,6 +36,7 @@ VOCABULARY: dict[str, Quantity] = {
     **shared.QUANTITIES,
     **tumbling.QUANTITIES,
     **stereo_pose.QUANTITIES,
+    **shape.QUANTITIES,
     **camera_range.QUANTITIES,
     **orbit_from_pixels.QUANTITIES,
 }
@@ -65,6 +67,7 @@ _TABLE_SCALE = {
     ("rad", "mrad"): 1e3,
     ("rad/s", "deg/s"): 180 / np.pi,
     ("m", "km"): 1e-3,
+    ("1", "%"): 100.0,
     ("m2", "km2"): 1e-6,
     ("N m", "mN m"): 1e3,
 }

@@ -15,6 +15,7 @@ from debrisest.roles import SimulationPart
 from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, table_scale
 
 SCALES = {
+    ("1", "%"): 100.0,
     ("rad", "deg"): 57.29577951308232,
     ("rad/s", "deg/s"): 57.29577951308232,
     ("m", "m"): 1.0,

@@ -38,8 +38,10 @@ class KnownPoints:
 
     @cached_property
     def dof(self) -> Array:
-        """Three for each point but one (time,)."""
-        return np.asarray(3.0 * np.maximum(self.tracks.seen.sum(axis=1) - 1.0, 0.0))
+        """Three for each point but one (time,), less where noise differs along the axes."""
+        count = np.maximum(self.tracks.seen.sum(axis=1), 1.0)
+        even = np.sum(self.tracks.even, axis=1, where=self.tracks.seen)
+        return np.asarray(3.0 * (even - even / count))
 
     @cached_property
     def body(self) -> Array:

@@ -16,6 +16,9 @@ class Tracks(NamedTuple):
     """(time, feature, 3), m, zero where not seen."""
     weight: Array
     """One over the variance (time, feature), 1/m^2, zero where not seen."""
+    even: Array
+    """Mean square of the noise over the axes in units of that variance (time, feature): 1 if it is
+    the same along all, less if the variance is that of the worst."""
 
     @property
     def seen(self) -> BoolArray:
@@ -34,7 +37,7 @@ class Tracks(NamedTuple):
 
     def within(self, epochs: BoolArray) -> "Tracks":
         """Return some epochs."""
-        return Tracks(self.times[epochs], self.points[epochs], self.weight[epochs])
+        return Tracks(*(part[epochs] for part in self))
 
     def without(self, observations: BoolArray) -> "Tracks":
         """Return the tracks less some observations (time, feature)."""
@@ -49,11 +52,13 @@ def tracks(times: Array, points: Array, sigma: Array | float) -> Tracks:
     """Return tracks of ``points (time, feature, 3)``, NaN where not seen.
 
     ``sigma``, m, is a number or broadcasts to (time, feature) or (time, feature, 3); of three
-    components the mean square counts.
+    components the largest counts, so that no direction is trusted more than it is measured.
     """
     seen = np.asarray(np.isfinite(points).all(axis=-1))
     sigma = np.asarray(sigma, dtype=np.float64)
+    even = np.ones(seen.shape)
     if sigma.ndim == 3:
-        sigma = np.sqrt(np.mean(sigma**2, axis=-1))
+        mean, sigma = np.mean(sigma**2, axis=-1), np.max(sigma, axis=-1)
+        even = np.where(sigma > 0.0, mean / np.where(sigma > 0.0, sigma, 1.0) ** 2, 1.0)
     weight = np.where(seen & (sigma > 0.0), 1.0 / np.where(sigma > 0.0, sigma, 1.0) ** 2, 0.0)
-    return Tracks(times, np.where(seen[..., None], points, 0.0), weight)
+    return Tracks(times, np.where(seen[..., None], points, 0.0), weight, even)

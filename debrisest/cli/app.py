@@ -14,11 +14,14 @@ from debrisest.cli import (
     estimate,
     estimates,
     measured,
+    reconstruct,
+    render,
     report,
     rerun,
     scenarios,
     show,
     stages,
+    track,
 )
 from debrisest.cli.exits import Commands
 
@@ -38,6 +41,9 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "compare": compare.compare,
     "estimate": estimate.estimate,
     "estimates": estimates.estimates,
+    "render": render.render,
+    "track": track.track,
+    "reconstruct": reconstruct.reconstruct,
     "validate": scenarios.validate,
     "schema": scenarios.schema,
     "init": scenarios.init,

@@ -1,7 +1,7 @@
 """Datasets as an HDF5 file in memory, and back.
 
-They are flat float64 (names are text) with units and dimension scales, so that h5py and xarray
-(``engine="h5netcdf"``) read them without this package.
+They are flat float64 (names are text; images uint8, compressed) with units and dimension scales, so
+that h5py and xarray (``engine="h5netcdf"``) read them without this package.
 """
 
 from collections.abc import Container, Mapping
@@ -15,6 +15,7 @@ from debrisest.arrays import Data
 from debrisest.results.told import require_as_told
 from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, has_runs
 
+_NUMBERS = (np.float64, np.uint8)
 _NO_COORDINATE = "This is a netCDF dimension but not a netCDF variable."
 
 
@@ -86,7 +87,7 @@ def _dataset(file: Any, name: str) -> Any:
         raise ValueError(f"{name} is no dataset of this file")
     if name not in VOCABULARY or (name in COORDINATES and _is_length(dataset)):
         return None
-    if not (_is_text(dataset) or dataset.dtype == np.float64):
+    if not (_is_text(dataset) or dataset.dtype in _NUMBERS):
         raise ValueError(f"{name} is of the type {dataset.dtype}")
     if dataset.attrs.get("units") != VOCABULARY[name].unit:
         raise ValueError(f"{name} is not in {VOCABULARY[name].unit}")
@@ -131,4 +132,7 @@ def _write_data(file: Any, data: Data) -> None:
 def _create(file: Any, name: str, value: Any) -> Any:
     if value.dtype.kind in "US":
         return file.create_dataset(name, data=value.tolist(), dtype=h5py.string_dtype())
+    if value.dtype == np.uint8:
+        one = (1,) * (value.ndim - 2) + value.shape[-2:]
+        return file.create_dataset(name, data=value, chunks=one, compression=1)
     return file.create_dataset(name, data=value.astype(np.float64))

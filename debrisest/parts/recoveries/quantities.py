@@ -1,6 +1,6 @@
 """What recoveries give, and their errors."""
 
-from debrisest.quantity import RUN, TIME, TIME_QUATERNION, Quantity
+from debrisest.quantity import RUN, TIME, TIME_QUATERNION, TIME_VECTOR, Quantity
 
 QUANTITIES = {
     "raw_q_if": Quantity(TIME_QUATERNION, "1", "attitude from the points of one epoch"),
@@ -26,6 +26,14 @@ QUANTITIES = {
     "observed_attitude": Quantity(RUN, "rad", "RMS of recovered_attitude where observed", "deg"),
     "gap_pitch": Quantity(RUN, "rad", "RMS of recovered_pitch inside the gaps", "deg"),
     "gap_attitude": Quantity(RUN, "rad", "RMS of recovered_attitude inside the gaps", "deg"),
+    "view_rotation": Quantity(
+        ("run", "time_s", "row", "column"), "1", "turns the structure's axes into the camera's"
+    ),
+    "view_translation": Quantity(TIME_VECTOR, "m", "origin of these axes in the camera's"),
+    "cloud_point_r": Quantity(("run", "cloud_point", "axis"), "m", "points of the body's surface"),
+    "cloud_seen": Quantity(("run", "time_s", "cloud_point"), "1", "which frames see a point"),
+    "scale_spread": Quantity(RUN, "1", "relative 1-sigma of the scale; infinite: no scale"),
+    "reprojection": Quantity(RUN, "px", "mean distance of features from where they should be"),
     "coverage": Quantity(RUN, "1", "share of epochs with an attitude", "1"),
     "pieces": Quantity(RUN, "1", "pieces of uninterrupted samples", "1", two_sided=True),
     "signs_right": Quantity(RUN, "1", "share of sign decisions that were right", "1"),

@@ -7,6 +7,11 @@ _TIME_OBSERVER = (*TIME, "observer")
 _CONTROL = ("run", "control_time_s", "observer")
 
 QUANTITIES = {
+    "measured_image": Quantity(
+        (*TIME, "camera", "image_row", "image_column"), "1", "grey levels from 0 to 255"
+    ),
+    "camera_matrix": Quantity(("run", "camera", "row", "column"), "px", "camera matrix"),
+    "lens_distortion": Quantity(("run", "camera", "coefficient"), "1", "k1, k2, p1, p2, k3"),
     "baseline": Quantity(RUN, "m", "distance between the cameras"),
     "measured_q_if": Quantity(TIME_QUATERNION, "1", "measured attitude of features or body axes"),
     "q_if_noise": Quantity(TIME, "rad", "1-sigma of its error about each axis; NaN if not known"),

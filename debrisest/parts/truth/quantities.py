@@ -1,6 +1,6 @@
 """What really happens, and what orbits and targets tell estimators."""
 
-from debrisest.quantity import TIME, TIME_QUATERNION, TIME_VECTOR, Quantity
+from debrisest.quantity import RUN, TIME, TIME_QUATERNION, TIME_VECTOR, Quantity
 
 _TIME_OBSERVER = (*TIME, "observer")
 
@@ -19,6 +19,15 @@ QUANTITIES = {
     "true_inertia_b": Quantity(("run", "row", "column"), "kg m2", "inertia tensor in body axes"),
     "true_point_b": Quantity(("run", "feature", "axis"), "m", "features in body axes"),
     "true_normal_b": Quantity(("run", "feature", "axis"), "1", "outward normals at the features"),
+    "true_vertex_b": Quantity(("run", "vertex", "axis"), "m", "corners of the body's mesh"),
+    "true_triangle": Quantity(
+        ("run", "triangle", "corner"), "1", "vertices of the triangles, counterclockwise"
+    ),
+    "true_albedo": Quantity(("run", "triangle"), "1", "part of the light that is sent back"),
+    "true_texture": Quantity(
+        ("run", "texture"), "1", "of the pattern on the body: width of its spots, m, and its seed"
+    ),
+    "true_volume": Quantity(RUN, "m3", "volume of the body"),
     "feature": Quantity(("feature",), "", "name of the feature of the target"),
     "known_point_f": Quantity(
         ("run", "feature", "axis"), "m", "features as the estimators know them, in their own frame"

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from debrisest.arrays import Data
 from debrisest.show.plots import (
+    body,
     covariance_trace,
     error_over_time,
     estimators_over_time,
@@ -62,6 +63,9 @@ FIGURES: dict[str, Kind] = {
     "recovered_quaternion": Kind(
         recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
     ),
+    "cloud": Kind(body.cloud, body.CLOUD),
+    "mesh": Kind(body.mesh, body.MESH),
+    "coverage_map": Kind(body.coverage, body.MESH),
     "first_hypotheses": Kind(sign_hypotheses.first_hypotheses, sign_hypotheses.DATASETS),
     "hypothesis_scores": Kind(sign_hypotheses.hypothesis_scores, sign_hypotheses.DATASETS),
     "next_hypotheses": Kind(sign_hypotheses.next_hypotheses, sign_hypotheses.DATASETS),

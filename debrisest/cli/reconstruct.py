@@ -1,0 +1,204 @@
+"""The command from images, a cloud or a mesh of a body to its mass properties."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from typer import Argument, Option
+
+from debrisest.cli.estimate import _from as relative_to
+from debrisest.cli.estimate import _written as written
+from debrisest.cli.exits import exit_if
+from debrisest.cli.inputs import load_all
+from debrisest.cli.options import RESULTS, Force, Quiet
+from debrisest.cli.stages import bring
+
+if TYPE_CHECKING:
+    from debrisest.arrays import Data
+    from debrisest.scenario.load import LoadedScenario
+
+_CALIBRATION = "calibration.yaml"
+
+
+def reconstruct(
+    source: Annotated[
+        Path | None,
+        Argument(help="A folder of images, a video, a cloud or a mesh.", metavar="INPUT"),
+    ] = None,
+    mesh: Annotated[
+        Path | None, Option("--mesh", help="A closed mesh: OBJ, STL or PLY, in metres.")
+    ] = None,
+    camera: Annotated[
+        Path | None, Option("--camera", help=f"Calibration (default: {_CALIBRATION} there).")
+    ] = None,
+    density_kg_m3: Annotated[float, Option("--density-kg-m3", help="Constant density.")] = 1000.0,
+    mass_kg: Annotated[
+        float | None, Option("--mass-kg", help="Mass, in the place of the density.")
+    ] = None,
+    known_length_m: Annotated[
+        float | None,
+        Option("--known-length-m", help="Longest distance between two points of the body."),
+    ] = None,
+    known_length_sigma_m: Annotated[
+        float, Option("--known-length-sigma-m", help="Its 1-sigma.")
+    ] = 0.0,
+    every: Annotated[int, Option("--every", min=1, help="Take one image of so many.")] = 1,
+    reference: Annotated[
+        Path | None, Option("--reference", help="A CAD mesh to lay the body onto, and to compare.")
+    ] = None,
+    out: Annotated[
+        Path | None, Option("--out", help="Folder to write to (default: results/<stem>).")
+    ] = None,
+    force: Force = False,
+    quiet: Quiet = False,
+) -> None:
+    """Find volume, centre of mass and inertia of a body of constant density.
+
+    Images go through the stages of a scenario, which is written, like those of sweep.
+    """
+    from debrisest.errors import UserError
+    from debrisest.reconstruction.mesh_files import SUFFIXES
+
+    given = mesh or source
+    if given is None or (mesh and source):
+        raise UserError("give one thing to reconstruct: images, a video, a cloud, or a mesh")
+    _require_positive(density_kg_m3=density_kg_m3, mass_kg=mass_kg, known_length_m=known_length_m)
+    if mesh or given.suffix.lower() in SUFFIXES:
+        data = _of_file(given, density_kg_m3, mass_kg)
+        _tell(data)
+        _compare(data, reference)
+        return
+    problem = {"density_kg_m3": density_kg_m3} if mass_kg is None else {"mass_kg": mass_kg}
+    if known_length_m is not None:
+        problem |= {
+            "known_length_m": known_length_m,
+            "known_length_sigma_m": known_length_sigma_m,
+        }
+    folder = out or RESULTS / given.resolve().stem
+    text = _scenario(given, camera, every, problem, folder)
+    config = written(folder / f"{folder.name}.yaml", text, force)
+    (scenario,) = load_all([config], None, None)
+    data = _run(scenario, folder, force, quiet)
+    _tell(data)
+    _compare(data, reference)
+    for path in [config, *_files(scenario, folder, data)]:
+        print(f"wrote {path}")
+    exit_if(bool(data.get("failure")))
+
+
+def _require_positive(**values: float | None) -> None:
+    from debrisest.errors import UserError
+
+    for name, value in values.items():
+        if value is not None and not value > 0:
+            raise UserError(f"--{name.replace('_', '-')} must be positive, not {value:g}")
+
+
+def _of_file(path: Path, density: float, mass: float | None) -> "Data":
+    """Return what a mesh, or the surface through a cloud, tells; UserError if it bounds no body."""
+    from debrisest.errors import UserError
+    from debrisest.reconstruction.mesh_data import mesh_data
+    from debrisest.reconstruction.mesh_files import read_mesh
+
+    try:
+        return mesh_data(*read_mesh(path), density, mass)
+    except ValueError as error:
+        raise UserError(f"{path}: {error}") from None
+
+
+def _tell(data: "Data") -> None:
+    from debrisest.show.body_answer import body_answer
+
+    print(*body_answer(data), sep="\n")
+
+
+def _compare(data: "Data", reference: Path | None) -> None:
+    """Print the body beside a reference onto which it is laid, in the reference's axes."""
+    from debrisest.reconstruction.mesh_data import body_mesh, mesh_data
+    from debrisest.reconstruction.mesh_files import read_mesh
+    from debrisest.show.body_answer import comparison
+
+    if reference is None or not data.get("body_mass", 0) > 0:
+        return
+    density = float(data["body_mass"] / data["volume"])
+    known = mesh_data(*read_mesh(reference), density, None)
+    print("", *comparison(data, known, *body_mesh(data), *body_mesh(known)), sep="\n")
+
+
+def _scenario(
+    images: Path, camera: Path | None, every: int, problem: dict[str, Any], folder: Path
+) -> str:
+    """Return a scenario for ``folder`` as YAML."""
+    import yaml
+
+    from debrisest.errors import UserError
+
+    there = [place / _CALIBRATION for place in (images, images.parent)]
+    calibration = camera or next((path for path in there if path.is_file()), None)
+    if not images.exists():
+        raise UserError(f"{images}: no such folder or file")
+    if calibration is None:
+        raise UserError(
+            f"{images}: the calibration of the camera is missing: give OpenCV's YAML with "
+            f"--camera, or put it there as {_CALIBRATION}"
+        )
+    measured = {
+        "kind": "image_files",
+        "folder": relative_to(folder, str(images)),
+        "camera": relative_to(folder, str(calibration)),
+    }
+    scenario = {
+        "title": f"Shape of the body in {images.name}",
+        "measured": measured | ({"every": every} if every > 1 else {}),
+        "estimators": {
+            "shape": {
+                "recovery": {"kind": "structure_from_motion"},
+                "problem": {"kind": "constant_density_shape", **problem},
+                "filter": {"kind": "surface"},
+            }
+        },
+    }
+    return yaml.safe_dump(scenario, sort_keys=False, allow_unicode=True)
+
+
+def _run(scenario: "LoadedScenario", folder: Path, force: bool, quiet: bool) -> "Data":
+    """Bring the stages up to date, in this process, and return what they found."""
+    import logging
+    import sys
+
+    from debrisest.results.open import find_results
+    from debrisest.results.status import up_to_date
+    from debrisest.runner.plan import Selection, plan
+    from debrisest.runner.sweep import Machine
+
+    if not quiet:
+        logging.basicConfig(stream=sys.stderr, format="%(message)s")
+        logging.getLogger("debrisest").setLevel(logging.INFO)
+    machine = Machine(jobs=1, quiet=quiet)
+    bring([scenario], folder.parent, Selection(force=force), machine, dry_run=False)
+    results = up_to_date(find_results(folder), plan(scenario, folder.parent, Selection()))
+    (case,), (estimator,) = scenario.cases, scenario.common.estimators
+    return results.one_run(case, estimator, 0)
+
+
+def _files(scenario: "LoadedScenario", folder: Path, data: "Data") -> list[Path]:
+    """Write mesh, cloud, a start for the stereo filter and pictures; return their paths."""
+    import numpy as np
+
+    from debrisest.reconstruction.mesh_data import body_mesh, start_table
+    from debrisest.reconstruction.mesh_files import write_mesh
+    from debrisest.runner.plan import Selection, plan
+    from debrisest.show.plots.draw import draw_all
+
+    paths = []
+    if "cloud_point_r" in data:
+        paths.append(folder / "cloud.ply")
+        points = data["cloud_point_r"][np.isfinite(data["cloud_point_r"][:, 0])]
+        write_mesh(paths[-1], points, np.empty((0, 3), dtype=np.int64))
+    if "vertex_r" in data:
+        paths.append(folder / "mesh.obj")
+        write_mesh(paths[-1], *body_mesh(data))
+        paths += draw_all(scenario, folder.parent, plan(scenario, folder.parent, Selection()))
+        if np.isfinite(data["moment_ratios"]).all():
+            paths.append(folder / "start.csv")
+            start_table(paths[-1], data)
+    return paths

@@ -1,0 +1,95 @@
+"""A mesh of a body from images whose places are known, and its mass properties."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from debrisest.arrays import Data
+from debrisest.filters.estimates import Estimates
+from debrisest.outcome import Outcome, sentences
+from debrisest.parts.recoveries.structure import padded
+from debrisest.problems.shape.model import ShapeModel
+from debrisest.reconstruction.body import (
+    COMPACT,
+    LEAST_COVERAGE,
+    Body,
+    Method,
+    packed,
+    reconstructed_body,
+)
+from debrisest.roles import FilterPart, Given
+
+
+class SurfaceStatus(Outcome):
+    """How a mesh ended; `sentence` tells the user."""
+
+    CLOSED = 0, "a closed mesh; the error bars count scale, coverage and resolution"
+    NO_SCALE = 1, "a closed mesh without a scale: only ratios are told"
+    UNSEEN = 2, "too much of the body was never seen: no number is told; let it turn further"
+
+
+class Surface(FilterPart):
+    """Screened Poisson of a dense cloud, or silhouettes fused with depth: the data choose."""
+
+    takes = "shape_model"
+    makes_start = True
+    kind: Literal["surface"]
+    method: Literal["poisson", "fusion"] | None = Field(None, description="default: by the data")
+
+    def run(self, model: ShapeModel, given: Given) -> Estimates:
+        """Return volume, centre and inertia of density one, the same at all epochs, and meshes."""
+        runs, epochs = given.measured.shape[:2]
+        bodies = [self._body(model, run) for run in range(runs)]
+        scaled = np.isfinite(model.data["scale_spread"]) | (model.known_length is not None)
+        told = np.array([body.coverage >= LEAST_COVERAGE for body in bodies])
+        blank = np.where(told, 1.0, np.nan)[:, None]
+        state = np.stack([packed(body.properties) for body in bodies]) * blank
+        sigma = np.stack([body.sigma for body in bodies]) * blank
+        status = np.where(told, np.where(scaled, 0, 1), 2)
+        return Estimates(
+            state=np.repeat(state[:, None], epochs, axis=1),
+            sigma=np.repeat(sigma[:, None], epochs, axis=1),
+            covariance=(sigma**2)[:, None, :, None] * np.eye(sigma.shape[1]),
+            kept=np.array([epochs - 1], dtype=np.int64),
+            nis=np.full((runs, epochs), np.nan),
+            nis_dof=np.zeros((runs, epochs), dtype=np.int64),
+            status=sentences(status, SurfaceStatus),
+            counts={
+                **_meshes(bodies),
+                "scaled": scaled.astype(np.float64),
+                "confident": (told & scaled).astype(np.float64),
+            },
+        )
+
+    def _body(self, model: ShapeModel, run: int) -> Body:
+        return reconstructed_body(*model.images(run), self.method, model.known_length)
+
+
+def _meshes(bodies: list[Body]) -> Data:
+    vertices = max(len(body.mesh.vertices) for body in bodies)
+    triangles = max(len(body.mesh.triangles) for body in bodies)
+    return {
+        "vertex_r": np.stack([padded(body.mesh.vertices, vertices) for body in bodies]),
+        "triangle_r": np.stack(
+            [padded(body.mesh.triangles.astype(np.float64), triangles) for body in bodies]
+        ),
+        "triangle_seen": np.stack(
+            [padded(body.seen.astype(np.float64), triangles) for body in bodies]
+        ),
+        "mesh_method": np.array([_why(body.method, body.fill) for body in bodies]),
+        "mended": np.array(["; ".join(body.mesh.mended) for body in bodies]),
+        "cell": np.array([body.cell for body in bodies]),
+        "surface_seen": np.array([body.coverage for body in bodies]),
+        "hull_volume": np.array([body.hull_volume for body in bodies]),
+        "silhouette_volume": np.array([body.silhouette_volume for body in bodies]),
+    }
+
+
+def _why(method: Method, fill: float) -> str:
+    filled = f"the body fills {fill:.0%} of its convex hull"
+    if method == "poisson":
+        return f"screened Poisson surface of the dense cloud: {filled}"
+    if fill > COMPACT:
+        return f"silhouettes fused with depth: {filled}, but its Poisson surface does not close"
+    return f"silhouettes fused with depth: {filled}, less than the {COMPACT:.0%} of a compact one"

@@ -1,0 +1,63 @@
+"""What a mesh is made from: images, and where they were taken."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from debrisest.arrays import Array, BoolArray, Data
+from debrisest.reconstruction.silhouettes import Frames, silhouettes
+from debrisest.reconstruction.structure import Rig, Structure
+from debrisest.reconstruction.undistorted import undistorted
+
+ERROR_NAMES = (
+    *("volume", "centre_x", "centre_y", "centre_z"),
+    *(f"inertia_{axes}" for axes in ("xx", "yy", "zz", "xy", "xz", "yz")),
+)
+
+
+class ImagesOfBody(NamedTuple):
+    """Images of one run without distortion, and where they were taken."""
+
+    frames: Frames
+    """(time, camera, row, column)."""
+    masks: BoolArray
+    """The body's silhouettes (time, camera, row, column)."""
+    rig: Rig
+    structure: Structure
+
+
+class ShapeModel(NamedTuple):
+    """The images of all runs, from which a filter makes meshes."""
+
+    data: Data
+    known_length: tuple[float, float] | None
+    """The longest distance between two points of the body and its 1-sigma, m."""
+    error_names: tuple[str, ...] = ERROR_NAMES
+
+    def images(self, run: int) -> ImagesOfBody:
+        """Return what there is of a run, given by its place among the runs."""
+        frames, masks, rig = seen(self.data, run)
+        return ImagesOfBody(frames, masks, rig, structure_of(self.data, run))
+
+
+def seen(data: Data, run: int) -> tuple[Frames, BoolArray, Rig]:
+    """Return images without distortion, silhouettes, and cameras of a run."""
+    matrix = data["camera_matrix"][run]
+    frames = data["measured_image"][run].astype(np.uint8)
+    flat = undistorted(frames, matrix, data["lens_distortion"][run])
+    rig = Rig(matrix, data["rig_rotation"][run], data["rig_translation"][run])
+    return flat, silhouettes(flat), rig
+
+
+def structure_of(data: Data, run: int) -> Structure:
+    """Return the stored structure of a run."""
+    points = data["cloud_point_r"][run]
+    there: Array = np.isfinite(points[:, 0])
+    return Structure(
+        rotation=data["view_rotation"][run],
+        translation=data["view_translation"][run],
+        points=points[there],
+        seen=data["cloud_seen"][run][:, there] == 1.0,
+        scale_sigma=float(data["scale_spread"][run]),
+        reprojection_px=float(data["reprojection"][run]),
+    )

@@ -1,0 +1,156 @@
+"""Distances at the pixels of an image from a second one, by semi-global matching.
+
+Source: Hirschmueller 2008. Two cameras of a rig, or one camera at two times, between which the
+body has turned, are treated alike: both images are turned about their cameras until corresponding
+points lie in the same row, and cut to the body.
+"""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from debrisest.arrays import Array, BoolArray
+from debrisest.reconstruction.silhouettes import Frames
+from debrisest.reconstruction.structure import Rig, Structure
+from debrisest.vision.libraries import vision_library
+
+_BLOCK = 5
+_MARGIN_PX = 16
+_WIDEST, _NARROWEST = np.radians(25.0), np.radians(2.0)
+"""Between the lines of sight of two times of one camera."""
+
+Depth = NDArray[np.float32]
+
+
+class View(NamedTuple):
+    """A camera and where it is."""
+
+    matrix: Array
+    """Camera matrix (3, 3), px."""
+    rotation: Array
+    """Axes r of the structure to those of the camera (3, 3)."""
+    translation: Array
+    """Origin of r in the camera's axes (3,)."""
+
+    @property
+    def position(self) -> Array:
+        """Return where the camera is in axes r (3,)."""
+        return np.asarray(-self.rotation.T @ self.translation)
+
+    def seen(self, points: Array) -> Array:
+        """Return points (..., 3) of axes r in the camera's."""
+        return np.asarray(points @ self.rotation.T + self.translation)
+
+
+class DepthView(NamedTuple):
+    """A depth image and from where it was taken."""
+
+    view: View
+    depth: Depth
+    """Along the line of sight's z (row, column), m; NaN where it is not known."""
+
+
+def depth_views(
+    frames: Frames, masks: BoolArray, rig: Rig, structure: Structure
+) -> list[DepthView]:
+    """Return the depth of pairs of images (time, camera, row, column), one for each frame.
+
+    A pair is that of the first two cameras, or where there is one, of a frame and the next.
+    """
+    found = []
+    for frame, (first, second) in _pairs(rig, structure):
+        points = structure.points[structure.seen[frame]]
+        one, other = (_view(rig, structure, *each) for each in (first, second))
+        if len(points) > 3:
+            found.append(
+                _Rectified(one, other, points).depth((frames[first], frames[second]), masks[first])
+            )
+    return found
+
+
+_At = tuple[int, int]
+"""Frame and camera."""
+
+
+def _pairs(rig: Rig, structure: Structure) -> Iterator[tuple[int, tuple[_At, _At]]]:
+    frames = structure.registered
+    if len(rig.matrix) > 1:
+        yield from ((int(frame), ((int(frame), 0), (int(frame), 1))) for frame in frames)
+        return
+    for one, other in zip(frames.tolist(), frames[1:].tolist()):
+        turn = structure.rotation[one] @ structure.rotation[other].T
+        angle = np.arccos(np.clip((np.trace(turn) - 1.0) / 2.0, -1.0, 1.0))
+        if _NARROWEST < angle < _WIDEST:
+            yield one, ((one, 0), (other, 0))
+
+
+def _view(rig: Rig, structure: Structure, frame: int, camera: int) -> View:
+    turn, shift = rig.rotation[camera], rig.translation[camera]
+    rotation, translation = structure.rotation[frame], structure.translation[frame]
+    return View(rig.matrix[camera], turn @ rotation, turn @ translation + shift)
+
+
+class _Rectified:
+    """Two views turned until corresponding points lie in the same row, cut to the body."""
+
+    def __init__(self, one: View, other: View, points: Array) -> None:
+        """``points (point, 3)`` of axes r are the body's that the first view sees."""
+        self._cv2: Any = vision_library("cv2")
+        baseline = other.position - one.position
+        across = one.rotation @ baseline / np.linalg.norm(baseline)
+        down = np.cross([0.0, 0.0, 1.0], across)
+        turn = np.stack([across, down, np.zeros(3)])
+        turn[1] /= np.linalg.norm(down)
+        turn[2] = np.cross(turn[0], turn[1])
+        focal = one.matrix[0, 0]
+        self._one = View(np.eye(3), turn @ one.rotation, turn @ one.translation)
+        second = self._one.rotation @ other.rotation.T
+        self._other = View(np.eye(3), self._one.rotation, second @ other.translation)
+        seen = [view.seen(points) for view in (self._one, self._other)]
+        pixels = [focal * each[:, :2] / each[:, 2:] for each in seen]
+        low = [np.floor(each.min(axis=0)) - _MARGIN_PX for each in pixels]
+        low[1][1] = low[0][1]
+        high = np.max([each.max(axis=0) - corner for each, corner in zip(pixels, low)], axis=0)
+        self._size = tuple(int(side) for side in np.ceil(high) + _MARGIN_PX)
+        self._matrix = [
+            np.array([[focal, 0, -corner[0]], [0, focal, -corner[1]], [0, 0, 1]]) for corner in low
+        ]
+        self._offset = low[0][0] - low[1][0]
+        self._span = focal * float(np.linalg.norm(baseline))
+        disparity = pixels[0][:, 0] - pixels[1][:, 0] - self._offset
+        self._bounds = disparity.min() - _MARGIN_PX, disparity.max() + _MARGIN_PX
+        self._maps = [
+            self._cv2.initUndistortRectifyMap(
+                view.matrix, None, turned, matrix, self._size, self._cv2.CV_32FC1
+            )
+            for view, turned, matrix in zip((one, other), (turn, second), self._matrix)
+        ]
+
+    def depth(self, pair: tuple[Frames, Frames], mask: BoolArray) -> DepthView:
+        """Return the depth from the first view, in the silhouette (row, column)."""
+        linear = self._cv2.INTER_LINEAR
+        images = [self._cv2.remap(image, *maps, linear) for image, maps in zip(pair, self._maps)]
+        inside = self._cv2.remap(mask.astype(np.uint8) * 255, *self._maps[0], linear) > 127
+        least = int(np.floor(self._bounds[0]))
+        count = 16 * int(np.ceil((self._bounds[1] - least) / 16.0))
+        edge = [(0, 0), (max(0, least + count), max(0, -least))]
+        matcher = self._cv2.StereoSGBM_create(
+            minDisparity=least,
+            numDisparities=count,
+            blockSize=_BLOCK,
+            P1=8 * _BLOCK**2,
+            P2=32 * _BLOCK**2,
+            disp12MaxDiff=1,
+            uniquenessRatio=5,
+            speckleWindowSize=60,
+            speckleRange=2,
+        )
+        wide = [np.pad(image, edge) for image in images]
+        found = matcher.compute(*wide).astype(np.float32) / 16.0
+        found = found[:, edge[1][0] : edge[1][0] + inside.shape[1]]
+        known = inside & (found >= least)
+        disparity = np.where(known, found + self._offset, 1.0)
+        depth = np.where(known & (disparity > 0), self._span / disparity, np.nan)
+        return DepthView(self._one._replace(matrix=self._matrix[0]), depth.astype(np.float32))

@@ -1,0 +1,189 @@
+"""Image sequences in folders, and videos: in both, a frame of every camera at each time.
+
+A folder of one camera holds the images, one of a stereo pair the folders ``left`` and ``right``
+with the same names; ``times.csv`` (``frame,time_s``) has the times, if it is there.
+"""
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from debrisest.arrays import Array
+from debrisest.errors import UserError
+from debrisest.files import replacing
+from debrisest.vision.libraries import vision_library
+
+SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm")
+VIDEOS = (".mp4", ".avi", ".mov", ".mkv", ".m4v", ".webm")
+PAIR = ("left", "right")
+TIMES = "times.csv"
+_CODECS = {".mp4": "mp4v", ".avi": "MJPG"}
+
+
+class ImageSequence(NamedTuple):
+    """Grey images of one camera or several."""
+
+    source: str
+    cameras: tuple[str, ...]
+    frames: NDArray[np.uint8]
+    """(time, camera, row, column)."""
+    times: Array | None
+    """Seconds (time,), where a file tells them."""
+
+
+def read_images(path: Path) -> ImageSequence:
+    """Return the images of a folder or of a video file.
+
+    Raises `UserError`: nothing there, no images, unreadable or damaged ones, other sizes, missing
+    frames, times that do not fit.
+    """
+    if path.is_dir():
+        return _folder(path)
+    if not path.is_file():
+        raise UserError(f"{path}: no such folder or file")
+    if path.suffix.lower() in VIDEOS:
+        return _video(path)
+    allowed = ", ".join(VIDEOS)
+    raise UserError(f"{path}: neither a folder of images nor a video file ({allowed})")
+
+
+def write_images(folder: Path, images: ImageSequence) -> None:
+    """Write a folder that `read_images` reads, PNG without loss."""
+    cv2 = vision_library("cv2")
+    for index, camera in enumerate(images.cameras):
+        place = folder / camera if len(images.cameras) > 1 else folder
+        for number, frame in enumerate(images.frames[:, index]):
+            coded = cv2.imencode(".png", frame)[1]
+            with replacing(place / f"{number:06d}.png") as temporary:
+                temporary.write_bytes(coded.tobytes())
+    if images.times is not None:
+        rows = (f"{number:06d}.png,{time!r}\n" for number, time in enumerate(images.times.tolist()))
+        with replacing(folder / TIMES) as temporary:
+            temporary.write_text("frame,time_s\n" + "".join(rows), encoding="utf-8")
+
+
+def write_video(path: Path, frames: NDArray[np.uint8], rate_hz: float) -> None:
+    """Write frames (time, row, column) of one camera as MP4 or AVI, with loss.
+
+    Raises `UserError` for another format, or where no codec is there.
+    """
+    cv2 = vision_library("cv2")
+    suffix = path.suffix.lower()
+    if suffix not in _CODECS:
+        raise UserError(f"{path}: videos are written as {' or '.join(_CODECS)}")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    code = cv2.VideoWriter_fourcc(*_CODECS[suffix])
+    writer = cv2.VideoWriter(str(path), code, rate_hz, frames.shape[:0:-1])
+    if not writer.isOpened():
+        raise UserError(f"{path}: this machine's OpenCV cannot write {suffix}")
+    for frame in frames:
+        writer.write(cv2.cvtColor(frame, cv2.COLOR_GRAY2BGR))
+    writer.release()
+
+
+def _folder(path: Path) -> ImageSequence:
+    cameras = PAIR if all((path / name).is_dir() for name in PAIR) else ("camera",)
+    folders = [path / name for name in cameras] if len(cameras) > 1 else [path]
+    names = [_names(folder) for folder in folders]
+    for folder, own in zip(folders, names):
+        if lacking := sorted(set(names[0]) ^ set(own)):
+            raise UserError(
+                f"{path}: {lacking[0]} is not in both {' and '.join(cameras)} "
+                f"({len(lacking)} such frames); remove it, or add the other image"
+            )
+        _check_numbers(folder, own)
+    found = [[_image(folder / name) for name in names[0]] for folder in folders]
+    _check_sizes(
+        [
+            (folder / name, image)
+            for folder, own in zip(folders, found)
+            for name, image in zip(names[0], own)
+        ]
+    )
+    frames = np.stack([np.stack(own) for own in found], axis=1)
+    return ImageSequence(str(path), cameras, frames, _times(path / TIMES, names[0]))
+
+
+def _names(folder: Path) -> list[str]:
+    """Return the names of the images in a folder, in their order."""
+    found = sorted(one.name for one in folder.iterdir() if one.suffix.lower() in SUFFIXES)
+    if not found:
+        allowed = ", ".join(SUFFIXES)
+        raise UserError(f"{folder}: no images there ({allowed})")
+    return found
+
+
+def _check_numbers(folder: Path, names: Sequence[str]) -> None:
+    """Raise UserError where frames that are numbered throughout have a gap."""
+    digits = ["".join(filter(str.isdigit, Path(name).stem)) for name in names]
+    if not all(digits):
+        return
+    numbers = sorted(map(int, digits))
+    steps = np.diff(numbers)
+    if len(steps) > 1 and (steps != steps[0]).any() and np.median(steps) == 1:
+        first = numbers[int(np.argmax(steps != 1))] + 1
+        if not (folder.parent / TIMES).exists() and not (folder / TIMES).exists():
+            raise UserError(
+                f"{folder}: frame {first} is missing; put it there, or give each frame's time in "
+                f"{TIMES} (frame,time_s)"
+            )
+
+
+def _image(path: Path) -> NDArray[np.uint8]:
+    cv2 = vision_library("cv2")
+    content = np.frombuffer(path.read_bytes(), dtype=np.uint8)
+    image = cv2.imdecode(content, cv2.IMREAD_GRAYSCALE) if len(content) else None
+    if image is None:
+        raise UserError(f"{path}: not an image that can be read; it may be damaged")
+    return np.asarray(image)
+
+
+def _check_sizes(images: Iterable[tuple[Path, NDArray[np.uint8]]]) -> None:
+    shape: tuple[int, ...] = ()
+    for path, image in images:
+        shape = shape or image.shape
+        if image.shape != shape:
+            told = [f"{width} x {height}" for height, width in (image.shape, shape)]
+            raise UserError(f"{path}: {told[0]} pixels, the first image has {told[1]}")
+
+
+def _times(path: Path, names: Sequence[str]) -> Array | None:
+    if not path.is_file():
+        return None
+    with path.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    try:
+        told = {row["frame"]: float(row["time_s"]) for row in rows}
+        times = np.array([told[name] for name in names])
+    except KeyError as error:
+        raise UserError(f"{path}: no {error.args[0]} there; it has frame,time_s") from None
+    except (TypeError, ValueError) as error:
+        raise UserError(f"{path}: a time that is no number: {error}") from None
+    if not np.isfinite(times).all() or (np.diff(times) <= 0).any():
+        raise UserError(f"{path}: the times must ascend with the names of the frames")
+    return times
+
+
+def _video(path: Path) -> ImageSequence:
+    cv2 = vision_library("cv2")
+    video: Any = cv2.VideoCapture(str(path))
+    frames = []
+    while video.isOpened():
+        there, frame = video.read()
+        if not there:
+            break
+        frames.append(cv2.cvtColor(frame, cv2.COLOR_BGR2GRAY))
+    rate, said = video.get(cv2.CAP_PROP_FPS), int(video.get(cv2.CAP_PROP_FRAME_COUNT))
+    video.release()
+    if not frames:
+        raise UserError(f"{path}: not a video that can be read; it may be damaged")
+    if len(frames) < 0.9 * said:
+        raise UserError(
+            f"{path}: {len(frames)} of {said} frames can be read; the video is damaged or cut off"
+        )
+    times = np.arange(len(frames)) / rate if rate > 0 else None
+    return ImageSequence(str(path), ("camera",), np.stack(frames)[:, None], times)

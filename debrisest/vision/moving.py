@@ -1,0 +1,24 @@
+"""What moves in images of a camera that stands still."""
+
+import numpy as np
+from scipy.ndimage import binary_dilation, uniform_filter
+
+from debrisest.arrays import BoolArray
+from debrisest.vision.optical_flow import Image
+
+_SIGMAS = 4.0
+_AROUND = 5
+"""Pixels over which a change is averaged, and by which its area grows."""
+
+
+def moving(frames: Image, epoch: int) -> BoolArray:
+    """Return where an image (row, column) of ``frames (time, row, column)`` changes.
+
+    Between the frames before and after, by more than the noise that most of the image has.
+    """
+    near = frames[max(epoch - 1, 0) : epoch + 2].astype(float)
+    change = uniform_filter(np.ptp(near, axis=0), _AROUND)
+    middle = np.median(change)
+    spread = 1.4826 * np.median(np.abs(change - middle)) + 0.1
+    changes = change > middle + _SIGMAS * spread
+    return np.asarray(binary_dilation(changes, iterations=_AROUND))

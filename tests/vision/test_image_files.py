@@ -1,0 +1,118 @@
+"""Folders of images and videos: what is written is read, what is wrong is told in one sentence."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from debrisest.errors import UserError
+
+cv2 = pytest.importorskip("cv2")
+
+from debrisest.vision.image_files import (  # noqa: E402
+    ImageSequence,
+    read_images,
+    write_images,
+    write_video,
+)
+
+
+def sequence(cameras: tuple[str, ...] = ("left", "right"), frames: int = 5) -> ImageSequence:
+    values = np.random.default_rng(1).integers(0, 255, (frames, len(cameras), 48, 64))
+    return ImageSequence("", cameras, values.astype(np.uint8), np.arange(frames) * 0.5)
+
+
+@pytest.mark.parametrize("cameras", [("left", "right"), ("camera",)])
+def test_a_folder_is_read_as_it_was_written(tmp_path: Path, cameras: tuple[str, ...]) -> None:
+    written = sequence(cameras)
+    write_images(tmp_path, written)
+    found = read_images(tmp_path)
+    assert found.cameras == cameras
+    assert (found.frames == written.frames).all()
+    assert found.times is not None and written.times is not None
+    assert (found.times == written.times).all()
+
+
+@pytest.mark.parametrize("suffix", [".avi", ".mp4"])
+def test_a_video_is_read_with_its_rate(tmp_path: Path, suffix: str) -> None:
+    column = np.linspace(40, 200, 64).astype(np.uint8)
+    frames = np.stack([np.tile(np.roll(column, 3 * k), (48, 1)) for k in range(6)])
+    write_video(tmp_path / f"film{suffix}", frames, 10.0)
+    found = read_images(tmp_path / f"film{suffix}")
+    assert found.frames.shape == (6, 1, 48, 64)
+    assert np.abs(found.frames[:, 0].astype(float) - frames).mean() < 8
+    np.testing.assert_allclose(found.times, np.arange(6) / 10.0)
+
+
+def _empty(folder: Path) -> None:
+    for path in folder.rglob("*.png"):
+        path.unlink()
+
+
+def _missing_right(folder: Path) -> None:
+    (folder / "right" / "000002.png").unlink()
+
+
+def _missing_both(folder: Path) -> None:
+    for side in ("left", "right"):
+        (folder / side / "000002.png").unlink()
+    (folder / "times.csv").unlink()
+
+
+def _small(folder: Path) -> None:
+    cv2.imwrite(str(folder / "left" / "000003.png"), np.zeros((40, 64), np.uint8))
+
+
+def _damaged(folder: Path) -> None:
+    path = folder / "left" / "000001.png"
+    path.write_bytes(path.read_bytes()[:40])
+
+
+def _hollow(folder: Path) -> None:
+    (folder / "left" / "000001.png").write_bytes(b"")
+
+
+def _times_short(folder: Path) -> None:
+    (folder / "times.csv").write_text("frame,time_s\n000000.png,0\n")
+
+
+def _times_back(folder: Path) -> None:
+    rows = [f"{k:06d}.png,{5 - k}\n" for k in range(5)]
+    (folder / "times.csv").write_text("frame,time_s\n" + "".join(rows))
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        (_empty, "no images there"),
+        (_missing_right, "000002.png is not in both left and right"),
+        (_missing_both, "frame 2 is missing"),
+        (_small, "000003.png: 64 x 40 pixels, the first image has 64 x 48"),
+        (_damaged, "000001.png: not an image that can be read"),
+        (_hollow, "000001.png: not an image that can be read"),
+        (_times_short, "no 000001.png there"),
+        (_times_back, "the times must ascend"),
+    ],
+)
+def test_what_is_wrong_with_a_folder_is_told(tmp_path: Path, damage: object, said: str) -> None:
+    write_images(tmp_path, sequence())
+    assert callable(damage)
+    damage(tmp_path)
+    with pytest.raises(UserError, match=said) as told:
+        read_images(tmp_path)
+    assert len(told.value.problems) == 1
+
+
+def test_what_is_wrong_with_a_video_is_told(tmp_path: Path) -> None:
+    frames = np.random.default_rng(1).integers(0, 255, (30, 48, 64)).astype(np.uint8)
+    write_video(tmp_path / "film.avi", frames, 10.0)
+    (tmp_path / "bad.avi").write_bytes((tmp_path / "film.avi").read_bytes()[:300])
+    (tmp_path / "film.txt").write_text("no video")
+    with pytest.raises(UserError, match="not a video that can be read"):
+        read_images(tmp_path / "bad.avi")
+    with pytest.raises(UserError, match="neither a folder of images nor a video"):
+        read_images(tmp_path / "film.txt")
+    with pytest.raises(UserError, match="no such folder or file"):
+        read_images(tmp_path / "none.avi")
+    with pytest.raises(UserError, match="videos are written as"):
+        write_video(tmp_path / "film.gif", frames, 10.0)
