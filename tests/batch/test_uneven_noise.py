@@ -36,7 +36,7 @@ def test_a_stereo_pair_s_points_are_accepted_with_errors_as_told(seed: int) -> N
     q, rate = torque_free(
         times, np.array([1.0, 0, 0, 0]), np.radians([3.0, 5.0, 2.0]), np.array([0.4, 0.9, 1.0])
     )
-    exact = quaternion.rotate(q[:, None], body) + [0.0, 0.0, 20.0]
+    exact = quaternion.rotate(q[:, None], body) + np.array([0.0, 0.0, 20.0])
     seen = exact + SIGMA * draws.normal(size=exact.shape)
     found = estimate_from_points(times, seen, np.broadcast_to(SIGMA, seen.shape))
     assert found.status in (Status.ACCEPTED, Status.ACCEPTED_IN_PART)
