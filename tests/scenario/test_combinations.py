@@ -72,7 +72,9 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     | {"q_sigma": [3e-3], "inertia_ratio_sigma": [0.7], "point_sigma_m": [1]}
     | {"bodies_only": [False, True]},
     "drawn_orbit": {"position_sigma_m": [100], "velocity_sigma_m_s": [100]},
-    "basis_pursuit": PURSUIT | {"signs": [{}, {"keep_hypotheses": True}]},
+    "basis_pursuit": PURSUIT
+    | {"signs": [{}, {"keep_hypotheses": True}]}
+    | {"exact_recovery": [False, True]},
     "direction_cosines": PURSUIT,
     "line_spectrum": {"attitude": ["triad", "wahba"], "most_lines": [30, 1]},
     "tumbling_attitude": {"integrator": ["rk4", "euler"], "measurement_noise": [1e-4]}
@@ -156,7 +158,7 @@ class World:
         found: dict[str, Any] = {"title": "any", "seed": 1, "runs": 2}
         found |= {"duration_s": epochs * step, "step_s": step}
         found |= {"target": self.one("target"), "orbit": self.one("orbit")}
-        ratios = "true_inertia_ratio" in self.there
+        ratios = found["target"]["kind"] == "random_points"
         found["motion"] = self.one("motion", *["gravity_gradient", "random_tumble"] * ratios)
         seen = found["motion"]["kind"] == "seen_from_leader"
         found["observers"] = {} if seen else {"chaser": self.one("observers", "satellite")}

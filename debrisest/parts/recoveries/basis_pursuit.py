@@ -71,11 +71,12 @@ class BasisPursuit(PursuitKeys, AttitudeRecovery):
 
     def _coefficient(self, solution: Recovered, piece: IntArray) -> Data:
         lines = solution.coefficients[:, 0]
-        return {"exact_recovery": exact_recovery_coefficient(lines, piece >= 0, solution.length)}
+        found = exact_recovery_coefficient(lines, piece >= 0, solution.length)
+        return {"exact_recovery_gap": 1.0 - found}
 
     def assess(self, data: Data) -> Data:
         """Return what all recoveries tell, and the coefficient if it was asked for."""
-        told = {name: data[name] for name in ("exact_recovery",) if name in data}
+        told = {name: data[name] for name in ("exact_recovery_gap",) if name in data}
         return super().assess(data) | told
 
     def _hypotheses(self, piece: IntArray) -> Hypotheses:

@@ -16,8 +16,8 @@ QUANTITIES = {
     ),
     "objective": Quantity(("run", "quaternion"), "1", "objective of each component's recovery"),
     "iterations": Quantity(("run", "quaternion"), "1", "iterations of each component's recovery"),
-    "exact_recovery": Quantity(
-        RUN, "1", "exact recovery coefficient of the lines of the scalar part", "1"
+    "exact_recovery_gap": Quantity(
+        RUN, "1", "1 - exact recovery coefficient of the lines of the scalar part", "1"
     ),
     "lines": Quantity(RUN, "1", "lines of the recovered spectrum", "1"),
     "recovered_pitch": Quantity(TIME, "rad", "pitch error of the recovered attitude", "deg"),
