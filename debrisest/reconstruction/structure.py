@@ -110,14 +110,14 @@ def _prepare(frames: Frames, masks: BoolArray, rig: Rig, folder: Path) -> None:
 def _run(folder: Path, tell: Callable[[str], None]) -> None:
     """Run the process and pass on what it says; ValueError if it ends without a result."""
     command = [sys.executable, "-m", "debrisest.reconstruction.structure_process", str(folder)]
-    with (folder / "log.txt").open("w") as log:
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)
+    with (
+        (folder / "log.txt").open("w") as log,
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True) as process,
+    ):
         try:
-            assert process.stdout is not None
-            for line in process.stdout:
+            for line in process.stdout or ():
                 tell(line.strip())
         finally:
             process.kill()
-            process.wait()
     if not (folder / RESULT).is_file():
         raise ValueError(f"structure from motion ended early; {folder / 'log.txt'} says why")
