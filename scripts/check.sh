@@ -20,8 +20,9 @@ debrisest sweep volpe2017.yaml --case nominal --case spin-free \
     --runs 20 --check --out "$results" >>"$results/tables.txt"
 debrisest sweep biondi2017-noise.yaml biondi2017-robust.yaml pesce2017-robust.yaml \
     random_targets.yaml --runs 4 --check --out "$results" >>"$results/tables.txt"
-# Every case of every scenario at least once; what has run already is not run again.
-debrisest sweep *.yaml --runs 1 --out "$results" >>"$results/tables.txt"
+# Every case of every scenario at least once, but for images, of which the tests have a short chain;
+# what has run already is not run again.
+debrisest sweep $(ls *.yaml | grep -v images) --runs 1 --out "$results" >>"$results/tables.txt"
 debrisest plot biondi2017.yaml li2011.yaml pesce2017.yaml volpe2017.yaml \
     --case 1 --case fig4 --case B --case nominal --runs 20 --out "$results" >/dev/null
 echo "all checks passed"

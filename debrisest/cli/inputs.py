@@ -57,6 +57,29 @@ def _check_variant(name: str) -> None:
         raise UserError(f"--variant {name}: {error.errors()[0]['ctx']['error']}") from None
 
 
+def computable(scenarios: Sequence["LoadedScenario"]) -> list["LoadedScenario"]:
+    """Return the scenarios whose libraries are installed, and tell of the others.
+
+    Raises UserError where none is left.
+    """
+    import sys
+
+    from debrisest.errors import UserError
+
+    able, problems = [], []
+    for scenario in scenarios:
+        if missing := scenario.missing_libraries:
+            told = f"{scenario.path}: needs {', '.join(missing)}, which are not installed"
+            problems.append(f"{told}: pip install 'debrisest[vision]'")
+        else:
+            able.append(scenario)
+    if not able:
+        raise UserError(problems)
+    for problem in problems:
+        print(f"{problem}; it is left out", file=sys.stderr)
+    return able
+
+
 def select(
     scenarios: Sequence["LoadedScenario"],
     runs: int | None,

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from debrisest.cli.exits import exit_if
-from debrisest.cli.inputs import load_all, select
+from debrisest.cli.inputs import computable, load_all, select
 from debrisest.cli.options import (
     RESULTS,
     CaseNames,
@@ -53,7 +53,7 @@ def _command(last_stage: str, help: str) -> Callable[..., None]:
         cluster: Cluster = None,
         quiet: Quiet = False,
     ) -> None:
-        scenarios = load_all(configs, settings, plugins, variant)
+        scenarios = computable(load_all(configs, settings, plugins, variant))
         selection = select(scenarios, runs, case, estimator, last_stage, force)
         exit_if(bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
 
@@ -83,7 +83,7 @@ def sweep(
     check: Check = False,
 ) -> None:
     """Do everything for all cases, then write and print the tables."""
-    scenarios = load_all(configs, settings, plugins, variant)
+    scenarios = computable(load_all(configs, settings, plugins, variant))
     selection = select(scenarios, runs, case, estimator, force=force)
     failed = bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
     if not dry_run:

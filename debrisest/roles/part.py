@@ -23,6 +23,8 @@ class Part(Keys, ABC):
     extends: ClassVar[tuple[str, ...]] = ()
     """Those of them that several parts give together, each of them its share."""
 
+    libraries: ClassVar[tuple[str, ...]] = ()
+    """Modules of the extra ``vision`` that it needs beside the core's."""
     declares: ClassVar[dict[str, Quantity]] = {}
     """Datasets that nobody else declares, such as those of a plug-in; they join the vocabulary."""
 

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import reduce
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -63,6 +64,12 @@ class LoadedScenario(NamedTuple):
     def common(self) -> Scenario:
         """Return one case's scenario, for what does not differ between cases."""
         return next(iter(self.cases.values())).scenario
+
+    @property
+    def missing_libraries(self) -> list[str]:
+        """Return the libraries that a part of any case needs and that are not installed."""
+        needed = {name for case in self.cases.values() for name in case.scenario.libraries}
+        return sorted(name for name in needed if find_spec(name) is None)
 
 
 def load_scenario(

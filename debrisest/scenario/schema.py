@@ -172,6 +172,15 @@ class Scenario(Keys):
         return {name: told for part in parts for name, told in part.frames.items()}
 
     @property
+    def libraries(self) -> set[str]:
+        """Return the modules that its parts need beside the core's."""
+        estimating = (
+            part for one in self.estimators.values() for part in (one.recovery, one.filter)
+        )
+        parts = (*self.simulation.values(), self.measured, *estimating)
+        return {name for part in parts if part is not None for name in part.libraries}
+
+    @property
     def scored(self) -> Window:
         """Return the window in which principal axes are relabeled: by default the last third."""
         if self.tables.scored_window is None:

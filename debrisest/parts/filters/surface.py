@@ -34,6 +34,7 @@ class Surface(FilterPart):
 
     takes = "shape_model"
     makes_start = True
+    libraries = ("cv2", "pycolmap", "skimage")
     kind: Literal["surface"]
     method: Literal["poisson", "fusion"] | None = Field(None, description="default: by the data")
 

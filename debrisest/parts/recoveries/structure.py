@@ -36,6 +36,7 @@ class StructureFromMotion(RecoveryPart):
         *("view_rotation", "view_translation", "cloud_point_r", "cloud_seen"),
         *("scale_spread", "reprojection"),
     )
+    libraries = ("cv2", "pycolmap")
     kind: Literal["structure_from_motion"]
 
     def recover(self, data: Data, clock: Clock) -> Data:

@@ -37,6 +37,7 @@ class Images(SimulationPart):
     )  # fmt: skip
     knows = ("camera_matrix", "lens_distortion", "rig_rotation", "rig_translation")
     measures = ("measured_image",)
+    libraries = ("cv2", "embreex")
     kind: Literal["images"]
     width_px: Size = 640
     height_px: Size = 480

@@ -24,6 +24,7 @@ class MeasuredImages(SourcePart):
         *("measured_image", "camera_matrix", "lens_distortion"),
         *("rig_rotation", "rig_translation"),
     )
+    libraries = ("cv2",)
     kind: Literal["image_files"]
     folder: str = Field(description="of images (left and right of a pair), or a video file")
     camera: str = Field(description="calibration in OpenCV's YAML")
