@@ -122,6 +122,8 @@ def _tell(found: "Tracked") -> None:
         f"\nper image      {seen.sum(axis=1).mean():.0f} features in the mean, "
         f"{seen.sum(axis=1).min()} at least"
     )
+    if blind := int((seen.sum(axis=1) < 3).sum()):
+        print(f"note: {blind} images have fewer than three features: the body was lost there")
     if np.isfinite(found.noise_px):
         print(f"noise          {found.noise_px:.3f} px, from how the points fit to one rigid body")
     if found.known_again:

@@ -11,19 +11,22 @@ from debrisest.show.plots.style import SKY, VERMILION, WIDTH, styled
 _TAIL = 10
 """Epochs of a track that are drawn."""
 _IN_STRIP = 6
+_AROUND = 0.05
+"""Part of the image that is shown around all features."""
 
 
 @styled
 def tracks_over_image(images: NDArray[np.uint8], pixels: Array, epoch: int) -> Figure:
     """Draw the last epochs of all tracks ``pixels (epoch, feature, 2)`` over one of the images."""
-    height, width = images.shape[1:]
-    figure = Figure(figsize=(WIDTH, WIDTH * height / width + 0.3))
+    (left, top), (right, bottom) = _about(pixels, images.shape[1:])
+    figure = Figure(figsize=(WIDTH, WIDTH * (bottom - top) / (right - left) + 0.3))
     axis = figure.subplots()
     tail = pixels[max(epoch - _TAIL, 0) : epoch + 1]
     now = np.isfinite(tail[-1, :, 0])
     _shown(axis, images[epoch])
     axis.plot(tail[:, now, 0], tail[:, now, 1], color=SKY, linewidth=0.7, rasterized=True)
     axis.plot(*tail[-1, now].T, ".", color=VERMILION, markersize=2.5)
+    axis.set(xlim=(left, right), ylim=(bottom, top))
     axis.set_title(
         f"image {epoch}: {int(now.sum())} features, and where they were in the "
         f"{len(tail) - 1} images before"
@@ -47,6 +50,13 @@ def strip(images: NDArray[np.uint8], pixels: Array, times: Array) -> Figure:
     for axis in axes[len(chosen) :]:
         axis.set_visible(False)
     return figure
+
+
+def _about(pixels: Array, shape: tuple[int, ...]) -> tuple[Array, Array]:
+    """Return the corners (2,) of the part of an image that has features at any time."""
+    size = np.array(shape[::-1], dtype=float)
+    first, last = (pick(pixels.reshape(-1, 2), axis=0) for pick in (np.nanmin, np.nanmax))
+    return np.maximum(first - _AROUND * size, -0.5), np.minimum(last + _AROUND * size, size - 0.5)
 
 
 def _shown(axis: Axes, image: NDArray[np.uint8]) -> None:
