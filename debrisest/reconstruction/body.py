@@ -37,6 +37,8 @@ _DEPTH = (6, 7)
 _NEAR = 0.025
 """Of the body's extent: how near a point of the cloud makes the surface a seen one."""
 _NEXT_PX = 2.0
+_AGREED = 0.8
+"""Share of the structure's points that silhouettes must hold."""
 _HULL_CELLS = 60
 
 
@@ -85,7 +87,13 @@ def reconstructed_body(
     replaces the scale of the structure. Raises ValueError where no closed surface comes out.
     """
     outer = _Outer(masks[:, 0], rig.matrix[0], structure)
-    structure = structure.of(outer.holds(structure.points))
+    held = outer.holds(structure.points)
+    if held.mean() < _AGREED:
+        raise ValueError(
+            f"the structure does not agree with the silhouettes, which hold {held.mean():.0%} of "
+            "its points: images were placed wrongly; take more of them, or larger ones"
+        )
+    structure = structure.of(held)
     outer = outer._replace(structure=structure)
     views = depth_views(frames, masks, rig, structure)
     extent = float(np.ptp(structure.points, axis=0).max())

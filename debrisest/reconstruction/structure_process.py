@@ -139,10 +139,8 @@ def _model(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int) -> 
     options.mapper.random_seed = options.triangulation.random_seed = 1
     options.ba_refine_focal_length = options.ba_refine_extra_params = False
     options.ba_refine_sensor_from_rig = False
-    options.min_num_matches = 12
     options.mapper.init_min_num_inliers = 50
     options.mapper.init_min_tri_angle = 5.0
-    options.mapper.abs_pose_min_num_inliers = 15
     placed = [0]
 
     def one_more() -> None:
