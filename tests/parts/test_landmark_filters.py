@@ -207,6 +207,35 @@ def test_a_run_that_does_not_fit_says_so(data) -> None:
     assert all("larger than stated" in words or "lost" in words for words in status)
 
 
+def test_a_bound_whose_model_leaves_the_truth_is_told_and_not_printed(data) -> None:
+    """A true attitude that jumps is no motion of this model."""
+    chosen = problem()
+    truth = chosen.truth(data).copy()
+    truth[1, 10:, :4] = quaternion.multiply(
+        truth[1, 10:, :4], quaternion.exp(np.array([0.05, 0.0, 0.0]))
+    )
+    state, covariance = chosen.pack(*FirstImage(kind="first_image").start(data, CLOCK))
+    given = Given(state, covariance, chosen.measurements(data), CLOCK, truth)
+    found = LandmarkBound(kind="landmark_bound").run(chosen.model(data, CLOCK), given)
+    assert found.status[1].startswith("lost: no bound")
+    assert np.isnan(found.state[1]).all()
+    assert found.status[[0, 2]].tolist() == ["linearised at the truth"] * 2
+    assert np.isfinite(found.state[[0, 2]]).all()
+
+
+def test_a_batch_of_which_every_run_is_lost_says_so(data) -> None:
+    wild = data | {"measured_pixel": 1e6 * data["measured_pixel"]}
+    batch = LandmarkBatch(kind="landmark_batch", restarts=1, **WINDOWS)
+    found = run(wild, problem(), batch)
+    assert (found.counts["doubt"] == 3).all()
+
+
+def test_noise_that_is_larger_than_said_is_told(data) -> None:
+    quieter = data | {"pixel_noise": 0.8 * data["pixel_noise"]}
+    status = run(quieter, problem(), LandmarkBatch(kind="landmark_batch", **WINDOWS)).status
+    assert all("the cost at the estimate" in words for words in status)
+
+
 def test_the_bound_needs_a_truth(data) -> None:
     chosen = problem()
     state, covariance = chosen.pack(*Guess(kind="guess").start(data, CLOCK))
