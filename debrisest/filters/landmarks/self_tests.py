@@ -26,8 +26,8 @@ from debrisest.filters.self_test import (
 _FEWEST = 4
 _DECISIVE = 20.0
 """Difference of the costs of two solutions, twice the logarithm of their odds, that decides."""
-_NO_FIT = 1.5
-"""Cost per degree of freedom of a solution that is none."""
+_NO_FIT = 4.0
+"""Cost per degree of freedom of a solution that is none: residuals twice as large as the noise."""
 _BLOCKS = 20
 _WIDE = 0.03
 """Sigma by that of the prior, above which a direction is wide enough for the cost to bend."""
