@@ -66,7 +66,7 @@ def test_only_what_is_estimated_is_shown(swept: Path, small: Path, cli: Callable
     assert set(shown["case"]) == {"slow"}
     assert set(shown["time_s"]) == {59.0}
     assert set(shown["run"]) == {0}
-    assert set(shown["status"]) == {"finished"}
+    assert set(shown["status"]) == {"consistent"}
     assert set(exported(swept / "small")["case"]) == {"slow"}
 
 
@@ -80,7 +80,7 @@ def test_another_run_and_epoch(swept: Path, small: Path, cli: Callable) -> None:
     np.testing.assert_allclose(rate["value"], np.degrees(data["rate_b"][2, 30]), rtol=1e-12)
     assert set(shown["time_s"]) == {30.0}
     printed = cli("estimates", small, "--out", swept, *asked).stdout
-    assert "Estimates: small slow, triad, run 2, at 30 s\nfinished\n" in printed
+    assert "Estimates: small slow, triad, run 2, at 30 s\nconsistent\n" in printed
 
 
 @pytest.mark.parametrize(

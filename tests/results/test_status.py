@@ -29,7 +29,7 @@ def test_all_is_up_to_date(small: Path, reference: Path) -> None:
     assert list(found) == ["", "triad", "wahba"]
     for row in found.values():
         assert (row.there, row.wanted, row.due, row.failed) == (3, 3, (), Counter())
-    assert found["triad"].ended == {LIMIT: 3, "filter: finished": 3}
+    assert found["triad"].ended == {LIMIT: 3, "filter: consistent": 3}
     assert list(found[""].lines()) == ["small slow, simulation: 3 runs there, 3 wanted, up to date"]
 
 
@@ -66,7 +66,7 @@ def test_failed_runs_are_counted_with_their_reason(
     assert reason.startswith(
         "recover failed: estimators.wahba.recovery (basis_pursuit): Arithmetic"
     )
-    assert row.ended == {LIMIT: 1, "filter: finished": 1}
+    assert row.ended == {LIMIT: 1, "filter: consistent": 1}
     told = cli("status", small, "--out", tmp_path / "out", "--case", "slow").stdout
     assert f"  {reason} (2 runs)" in told.splitlines()
 
@@ -108,7 +108,7 @@ def test_the_command_tells_it_and_writes_nothing(small: Path, swept: Path, cli: 
     assert done.exit_code == 0
     assert "small fast, triad: 3 runs there, 3 wanted, out of date" in done.stdout
     assert "small fast, wahba: 3 runs there, 3 wanted, up to date" in done.stdout
-    assert "  filter: finished (3 runs)" in done.stdout.splitlines()
+    assert "  filter: consistent (3 runs)" in done.stdout.splitlines()
     assert done.stderr == f"{swept / 'small/slow/notes.h5'} is not a checkpoint of debrisest\n"
     assert {path: path.stat().st_mtime_ns for path in swept.rglob("*")} == before
 
