@@ -59,6 +59,13 @@ def _typical(points: Array) -> tuple[Array, float]:
     return np.nan_to_num(_median(pairs, 1)), float(np.nan_to_num(usual))
 
 
+def _of_one(points: Array, index: int, mended: Array) -> float:
+    """Median deviation of the distances of one feature, if it were at ``mended (epoch, 3)``."""
+    distance = np.linalg.norm(points - mended[:, None], axis=-1)
+    distance[:, index] = np.nan
+    return float(np.nan_to_num(_median(_median(np.abs(distance - _median(distance, 0)), 0), 0)))
+
+
 def _loose(tracks: Tracks, points: Array, lines: IntArray) -> list[str]:
     """Features, or the epochs of features, that are not rigid with the rest."""
     (each, usual), size = _typical(points), _size(points)
@@ -103,9 +110,7 @@ def _column(points: Array) -> str:
 def _axes(points: Array, index: int, limit: float) -> str:
     """Which exchange or sign of axes of one feature would make it rigid with the rest."""
     for words, mended in _exchanges(points[:, index]):
-        trial = points.copy()
-        trial[:, index] = mended
-        if _typical(trial)[0][index] < limit:
+        if _of_one(points, index, mended) < limit:
             return f"; with {words} it would be: mend these rows"
     return ""
 
