@@ -14,7 +14,7 @@ from debrisest.clock import Clock
 from debrisest.dynamics import inertia_ratios
 from debrisest.filters.estimates import Estimates
 from debrisest.problems.shape.model import ShapeModel
-from debrisest.problems.shape.score import scores
+from debrisest.problems.shape.score import relative_spread, scores
 from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 
 _MATRIX = np.array([[4, 7, 8], [7, 5, 9], [8, 9, 6]])
@@ -62,9 +62,8 @@ class ConstantDensityShape(ProblemPart):
         density = self._density(state[:, 0])
         inertia, spread = state[:, _MATRIX] * density, sigma[:, _MATRIX] * density
         moments, axes = _principal(inertia)
-        across = np.sqrt(np.swapaxes(axes**2, 1, 2) @ spread**2 @ axes**2)
-        across = np.diagonal(across, axis1=1, axis2=2)
-        relative = across / moments
+        relative = relative_spread(inertia, spread)[:, None] * np.ones(3)
+        across = relative * moments
         scale = np.where(filtered.counts["scaled"] > 0, 1.0, np.nan)
         estimated = {
             "volume": (state[:, 0], sigma[:, 0]),

@@ -7,7 +7,7 @@ the estimate took.
 import numpy as np
 
 from debrisest.arrays import Array, Data, IntArray
-from debrisest.reconstruction.alignment import Alignment, align
+from debrisest.reconstruction.alignment import align
 from debrisest.vision.polyhedron import mass_properties
 
 _COMPONENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
@@ -36,8 +36,9 @@ def _of_run(data: Data, run: int) -> dict[str, float]:
     level = np.sqrt(np.outer(np.diag(inertia), np.diag(inertia)))
     errors = [data["volume"][run] / truth.volume - 1.0]
     errors += [float(error[place] / level[place]) for place in _COMPONENTS.values()]
-    bars = [data["volume_sigma"][run] / truth.volume, *_bars(data, run, found, level)]
-    within = np.abs(errors) <= 2.0 * np.array(bars)
+    spread = relative_spread(data["body_inertia_r"][run], data["body_inertia_r_sigma"][run])
+    bars = np.array([data["volume_sigma"][run] / truth.volume, *6 * [spread]])
+    within = np.abs(errors) <= 2.0 * bars
     shown = dict(zip(names, np.abs(errors).tolist()))
     return {**shown, "within_bars": float(within.mean()), "surface_distance": found.distance}
 
@@ -48,11 +49,11 @@ def _mesh(data: Data, run: int) -> tuple[Array, IntArray]:
     return vertices[np.isfinite(vertices[:, 0])], triangles[kept].astype(np.int64)
 
 
-def _bars(data: Data, run: int, found: Alignment, level: Array) -> list[float]:
-    """Return the sigmas of the components in the true axes, over ``level``.
+def relative_spread(inertia: Array, sigma: Array) -> Array:
+    """Return the largest sigma of a diagonal component over it (...), in whatever axes it is told.
 
-    Diagonal ones turn with the axes as variances do; all are taken to be independent.
+    Errors of scale, coverage and resolution go with the size of each component, so that this holds
+    in other axes, where sigmas that are turned like independent ones would drown small moments.
     """
-    square = found.rotation**2
-    sigma = np.sqrt(square @ data["body_inertia_r_sigma"][run] ** 2 @ square.T)
-    return [float(sigma[place] / level[place]) for place in _COMPONENTS.values()]
+    diagonals = (np.diagonal(each, axis1=-2, axis2=-1) for each in (sigma, inertia))
+    return np.asarray(np.divide(*diagonals).max(axis=-1))
