@@ -53,7 +53,8 @@ def test_who_cites_it_cites_this_version() -> None:
 
 def test_the_checks_sweep_every_case_of_every_scenario_and_the_workflow_reproduces_them() -> None:
     checks = (ROOT / "scripts" / "check.sh").read_text(encoding="utf-8").replace("\\\n", " ")
-    sweeps = [line for line in checks.splitlines() if line.startswith("debrisest sweep *.yaml")]
+    every = "debrisest sweep $(ls *.yaml | grep -v images)"
+    sweeps = [line for line in checks.splitlines() if line.startswith(every)]
     assert len(sweeps) == 1 and "--case" not in sweeps[0]
     workflow = yaml.safe_load((ROOT / ".github" / "workflows" / "tables.yml").read_text("utf-8"))
     steps = workflow["jobs"]["reproduce"]["steps"]

@@ -182,7 +182,7 @@ def test_a_guess_is_not_drawn_about_no_truth(tumbling: Path) -> None:
         (None, "is missing; give a file"),
         (b"not HDF5", "is not a checkpoint of debrisest; give a file"),
         ({"stage": "filter"}, "is a file of the stage filter; give a file"),
-        ({"time_s": [3.0, 2.0]}, "ascending"),
+        ({"time_s": [3.0, 2.0]}, "is truncated or damaged; give a file"),
         ({"start_position": [[1.0, 2.0, 3.0]]}, "start_position needs start_position_sigma"),
         ({"measured_range": [[1.0, 2.0, 3.0]]}, "measured_range has 3 values along time_s, not 2"),
     ],

@@ -128,7 +128,7 @@ def test_they_are_shown_beside_the_paper(config: Path, tmp_path: Path, sweep: Ca
     assert "Table 1: The lamp: mean, 4-6 s" in text
     lines = text.splitlines()
     assert any("paper" in line and "3.1" in line for line in lines)
-    assert any("simulated" in line and "3 =" in line for line in lines)
+    assert any("simulated" in line and "3 [3, 3] =" in line for line in lines)
     assert "Table 2: The drift: beacon_drift (deg/s), p100, end" in text
     chosen = sweep(config, tmp_path / "out", "--estimator", "one", "--case", "bright").stdout
     assert "The lamp" in chosen

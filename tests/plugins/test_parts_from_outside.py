@@ -12,7 +12,7 @@ import pytest
 from debrisest.errors import UserError
 from debrisest.plugins.load import load_plugins, read_plugins
 from debrisest.results import store
-from debrisest.runner.execute import run_step
+from debrisest.runner.compute import compute
 from debrisest.runner.plan import Selection, plan
 from debrisest.scenario.load import load_scenario
 
@@ -87,7 +87,7 @@ def test_a_worker_needs_no_file(config: Path, sensor: Path, cautious: Path, tmp_
     sensor.write_text("1 / 0")
     step = plan(loaded, tmp_path / "out", Selection(runs=1))[0]
     step.case.__dict__.pop("scenario", None)
-    run_step(step)
+    compute([step])
     assert "fading" in store.read(step.path)
 
 

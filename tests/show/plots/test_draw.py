@@ -16,7 +16,7 @@ from debrisest.results.assessed import Result, assessed
 from debrisest.results.open import find_results
 from debrisest.results.results import Results
 from debrisest.results.status import Wanted, up_to_date
-from debrisest.runner.execute import _attributes
+from debrisest.runner.compute import _attributes
 from debrisest.runner.plan import Selection, Step, plan
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.show.plots.draw import draw_all
