@@ -110,7 +110,7 @@ def test_a_sensor_in_a_single_file_declares_its_own_dataset(
 
     assert SunSensor.can_give() == ("sun_angle",)
     data = {"run": np.zeros(1), "time_s": np.arange(3.0), "sun_angle": np.ones((1, 3))}
-    store.write(tmp_path / "sun.h5", data, {})
+    store.write(tmp_path / "sun.h5", data, {"stage": "simulate"})
     assert store.read(tmp_path / "sun.h5")["sun_angle"].tolist() == [[1, 1, 1]]
     with h5py.File(tmp_path / "sun.h5") as file:
         assert file["sun_angle"].attrs["units"] == "rad"
