@@ -78,7 +78,7 @@ def _dataset(name: str, runs: int, value: float) -> Array:
     return np.full([lengths[axis] for axis in VOCABULARY[name].axes], value)
 
 
-def _made_up(stage: str, runs: int) -> Data:
+def _made_up(stage: str, runs: int, first: int) -> Data:
     """The datasets of a stage; every value of a run is the run's number."""
     names = {
         "simulate": ["true_position"],
@@ -89,7 +89,8 @@ def _made_up(stage: str, runs: int) -> Data:
     data = {name: _dataset(name, runs, 0.0) for name in names}
     for name in names:
         data[name] += 1e-3 * np.arange(runs).reshape(-1, *[1] * (data[name].ndim - 1))
-    return data | {"run": np.arange(float(runs)), "time_s": TIMES, "failure": np.full(runs, "")}
+    numbers = np.arange(first, first + runs, dtype=float)
+    return data | {"run": numbers, "time_s": TIMES, "failure": np.full(runs, "")}
 
 
 def _store(
@@ -99,7 +100,7 @@ def _store(
     for step in plan(scenario, out, Selection()):
         stage = step.address.stage
         if stage in stages:
-            data = _made_up(stage, step.runs)
+            data = _made_up(stage, step.runs, step.address.first_run)
             data["failure"] = data["failure"].astype(object)
             data["failure"][: (failing or {}).get(stage, 0)] = "broken"
             data["failure"] = data["failure"].astype(str)
@@ -190,7 +191,7 @@ def test_runs_of_a_second_file(scenario: LoadedScenario, tmp_path: Path) -> None
     assert list(single_runs(many, _there(many, tmp_path, first), {})) == []
     for step in steps:
         if step.address.first_run == 20 and step.address.stage == "recover":
-            store.write(step.path, _made_up("recover", step.runs), _attributes(step))
+            store.write(step.path, _made_up("recover", step.runs, 20), _attributes(step))
     steps = plan(many, tmp_path, Selection(cases=["x"]))
     (source,) = single_runs(many, _there(many, tmp_path, steps), {})
     assert source.context.endswith("run 20")
