@@ -4,12 +4,12 @@ from typing import Literal
 
 import numpy as np
 
-from debrisest.arrays import Data
+from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics.gravity_gradient import tumble
 from debrisest.dynamics.kepler import propagate
-from debrisest.parts.truth.each_run import each_run
+from debrisest.parts.truth.each_run import each_body
 from debrisest.roles import SimulationPart, UnitQuaternion, Vector3
 
 
@@ -18,18 +18,25 @@ class GravityGradient(SimulationPart):
 
     needs = ("true_inertia_b", "orbit_position", "orbit_velocity")
     truths = ("true_q_ib", "true_rate_b")
+    version = 2
     kind: Literal["gravity_gradient"]
     q_ib: UnitQuaternion = [1.0, 0.0, 0.0, 0.0]
     rate_deg_s: Vector3
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
-        """Return attitude and rate of the body axes, the same in every run."""
-        position, velocity = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+        """Return attitude and rate of the body axes, the same in every run of the same body."""
+        start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+        inertias = data["true_inertia_b"]
+        return each_body(lambda inertia: self._rotation(inertia, start, clock), inertias)
+
+    def _rotation(
+        self, inertia: Array, orbit: tuple[Array, Array], clock: Clock
+    ) -> dict[str, Array]:
         q_ib, rate_b = tumble(
             clock.times,
             np.array(self.q_ib),
             np.radians(self.rate_deg_s),
-            data["true_inertia_b"][0],
-            lambda time: propagate(position, velocity, np.array([time]))[0][0],
+            inertia,
+            lambda time: propagate(*orbit, np.array([time]))[0][0],
         )
-        return each_run({"true_q_ib": q_ib, "true_rate_b": rate_b}, draws)
+        return {"true_q_ib": q_ib, "true_rate_b": rate_b}
