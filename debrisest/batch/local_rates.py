@@ -79,7 +79,8 @@ def _half_length(times: Array, q: Array) -> float:
 
 def _fits(times: Array, q: Array, information: Array, half: float) -> Local | None:
     stride = max(half / 2.0, (times[-1] - times[0]) / _MOST_WINDOWS)
-    middles = times[np.unique(np.searchsorted(times, np.arange(times[0], times[-1], stride)))]
+    even = np.minimum(np.arange(times[0], times[-1], stride), times[-1])  # rounding may go past it
+    middles = times[np.unique(np.searchsorted(times, even))]
     fits = []
     for middle in middles:
         low, high = np.searchsorted(times, [middle - half, middle + half + 1e-9])

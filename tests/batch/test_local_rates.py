@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from debrisest.batch.local_rates import local_rates
+from debrisest.batch.local_rates import _fits, local_rates
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.starts import best_windows
 from debrisest.batch.tracks import tracks
@@ -18,3 +18,12 @@ def test_a_start_avoids_windows_with_wrong_matches(tumbling, box) -> None:
     clean = KnownPoints(tracks(tumbling.times[200:], points[200:], 0.05), box)
     assert abs(local.noise - 1.0) < 0.5
     assert abs(local_rates(clean.times, clean.seen()).noise - 1.0) < 0.5
+
+
+def test_windows_end_with_the_data_however_their_spacing_is_rounded() -> None:
+    """Of 300 spans some have a last multiple of the spacing that rounding lifts above the end."""
+    rng = np.random.default_rng(4)
+    q, information = np.tile([1.0, 0.0, 0.0, 0.0], (30, 1)), np.tile(np.eye(3), (30, 1, 1))
+    for start, length in rng.uniform(1.0, 1500.0, (300, 2)):
+        times = np.linspace(start, start + length, 30)
+        assert _fits(times, q, information, 0.0) is None
