@@ -68,7 +68,7 @@ def estimate(
     folder = out or RESULTS / (file.stem if file.is_file() else file.resolve().name)
     folder = folder if folder.name not in ("", "..") else folder.resolve()
     text, notes = _scenario(file, options, folder)
-    config = _written(folder / f"{folder.name}.yaml", text, force)
+    config = write_new(folder / f"{folder.name}.yaml", text, force)
     for note in notes:
         print(f"note: {note}")
     (scenario,) = load_all([config], None, None)
@@ -87,20 +87,20 @@ def _scenario(file: Path, options: dict[str, Any], folder: Path) -> tuple[str, l
 
     measured = measured_keys(file, options)
     data = source_of(measured, Path()).read(Path())
-    kept = {k: _from(folder, v) if k in _PATHS else v for k, v in measured.items()}
+    kept = {k: relative_to(folder, v) if k in _PATHS else v for k, v in measured.items()}
     found = default_scenario(f"Motion of the body in {file.name}", kept, data)
     notes = [str(note) for note in data.get("notes", ())]
     return yaml.safe_dump(found, sort_keys=False, allow_unicode=True), notes
 
 
-def _from(folder: Path, path: str | list[str]) -> str | list[str]:
+def relative_to(folder: Path, path: str | list[str]) -> str | list[str]:
     """Return a path, or some, as it counts from a folder, which links may lead to."""
     if isinstance(path, list):
-        return [str(_from(folder, each)) for each in path]
+        return [str(relative_to(folder, each)) for each in path]
     return Path(os.path.relpath(Path(path).resolve(), folder.resolve())).as_posix()
 
 
-def _written(path: Path, text: str, force: bool) -> Path:
+def write_new(path: Path, text: str, force: bool) -> Path:
     """Write a scenario, or raise UserError where another one is there."""
     from debrisest.errors import UserError
     from debrisest.files import replacing

@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from typer import Argument, Option
 
-from debrisest.cli.estimate import _from as relative_to
-from debrisest.cli.estimate import _written as written
+from debrisest.cli.estimate import relative_to, write_new
 from debrisest.cli.exits import exit_if
 from debrisest.cli.inputs import load_all
 from debrisest.cli.options import RESULTS, Force, Quiet
@@ -75,7 +74,7 @@ def reconstruct(
         }
     folder = out or RESULTS / given.resolve().stem
     text = _scenario(given, camera, every, problem, folder)
-    config = written(folder / f"{folder.name}.yaml", text, force)
+    config = write_new(folder / f"{folder.name}.yaml", text, force)
     (scenario,) = load_all([config], None, None)
     data = _run(scenario, folder, force, quiet)
     _tell(data)

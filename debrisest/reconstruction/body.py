@@ -113,11 +113,7 @@ def reconstructed_body(
     cell = extent / _CELLS[1]
     seen = _seen(mesh, cloud, _NEAR * extent)
     silhouettes = outer.volume(extent / _HULL_CELLS)
-    factor, scale_sigma = 1.0, structure.scale_sigma
-    if known_length is not None:
-        length = _longest(mesh.vertices)
-        factor = known_length[0] / length
-        scale_sigma = np.hypot(known_length[1] / known_length[0], cell / length)
+    factor, scale_sigma = _scale(mesh, structure, known_length, cell)
     found, rough_found = (
         mass_properties(each.vertices * factor, each.triangles) for each in (mesh, coarse)
     )
@@ -218,3 +214,14 @@ def _sigma(
     known = scale_sigma if np.isfinite(scale_sigma) else 0.0
     parts = (changed, scale * powers * known, scale * shares * unseen)
     return np.asarray(np.linalg.norm(parts, axis=0))
+
+
+def _scale(
+    mesh: ClosedMesh, structure: Structure, known_length: tuple[float, float] | None, cell: float
+) -> tuple[float, float]:
+    """Return the factor that lengths take, and the relative 1-sigma of the scale."""
+    if known_length is None:
+        return 1.0, structure.scale_sigma
+    length = _longest(mesh.vertices)
+    relative = float(np.hypot(known_length[1] / known_length[0], cell / length))
+    return known_length[0] / length, relative
