@@ -1,25 +1,22 @@
 """Surface, mass properties and error bars of a body from images whose places are known.
 
-Which surface is chosen by the data: a body that fills most of its convex hull gets the screened
-Poisson surface of its dense cloud, any other one, such as a thin panel, silhouettes fused with
-depth in voxels.
-
-Error bars (1 sigma) are the root of the sum of squares of three: that of the scale (three times it
-for the volume, five times for the inertia); what a coarser resolution changes; and coverage, where
-surface that no image shows is taken to be off by a third of its distance from the centre, which is
-its share for the volume and 5/3 of it for the inertia.
+The surface is that of silhouettes fused with depth in voxels, which closes whatever is seen and
+keeps thin panels. The screened Poisson surface of the dense cloud can be chosen instead: it was
+as near to compact bodies and lost panels.
 """
 
 from typing import Literal, NamedTuple
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError, cKDTree
+from scipy.spatial import ConvexHull, QhullError
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.reconstruction import fusion
 from debrisest.reconstruction.closed_mesh import ClosedMesh, closed_mesh
+from debrisest.reconstruction.coverage import share_of_area, triangles_seen
 from debrisest.reconstruction.dense_cloud import OrientedCloud, dense_cloud
 from debrisest.reconstruction.depth import DepthView, depth_views
+from debrisest.reconstruction.error_bars import Doubts, depth_sigma, error_bars
 from debrisest.reconstruction.poisson import poisson_mesh
 from debrisest.reconstruction.silhouettes import Frames
 from debrisest.reconstruction.structure import Rig, Structure
@@ -27,11 +24,9 @@ from debrisest.reconstruction.winding import pieces_of
 from debrisest.vision.polyhedron import MassProperties, mass_properties
 
 Method = Literal["poisson", "fusion"]
-COMPACT = 0.75
-"""Share of the convex hull that a compact body fills."""
 LEAST_COVERAGE = 0.8
 """Of the surface, below which no number is given."""
-_CELLS = (80, 120)
+_CELLS = (120, 200)
 """Cells along the body, of the coarse and of the fine surface."""
 _DEPTH = (6, 7)
 _NEAR = 0.025
@@ -50,8 +45,6 @@ class Body(NamedTuple):
     sigma: Array
     """1-sigma (10,) of volume, centre and inertia xx, yy, zz, xy, xz, yz."""
     method: Method
-    fill: float
-    """Share of the cloud's hull that the fused surface fills, by which the method was chosen."""
     cell: float
     """Side of the finer resolution's cells."""
     coverage: float
@@ -64,21 +57,12 @@ class Body(NamedTuple):
     """Of what all silhouettes share: the volume is no larger, but for their errors."""
 
 
-TENSOR = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
-"""Rows and columns of the components xx, yy, zz, xy, xz, yz."""
-
-
-def packed(properties: MassProperties) -> Array:
-    """Return volume, centre and inertia xx, yy, zz, xy, xz, yz as one vector (10,)."""
-    return np.array([properties.volume, *properties.centre, *properties.inertia[TENSOR]])
-
-
 def reconstructed_body(
     frames: Frames,
     masks: BoolArray,
     rig: Rig,
     structure: Structure,
-    method: Method | None = None,
+    method: Method = "fusion",
     known_length: tuple[float, float] | None = None,
 ) -> Body:
     """Return the body in images (time, camera, row, column) without distortion.
@@ -97,32 +81,24 @@ def reconstructed_body(
     outer = outer._replace(structure=structure)
     views = depth_views(frames, masks, rig, structure)
     extent = float(np.ptp(structure.points, axis=0).max())
-    cloud = _cloud(views, outer, extent / _CELLS[0])
-    rough = _fused(views, outer, extent / _CELLS[0])
-    hull = _hull_volume(cloud.points)
-    fill = mass_properties(rough.vertices, rough.triangles).volume / hull
-    chosen = method or ("poisson" if fill > COMPACT else "fusion")
-    if chosen == "poisson":
-        fine = _cloud(views, outer, extent / _CELLS[1])
-        try:
-            coarse, mesh = (_poisson(*each) for each in zip((cloud, fine), _DEPTH))
-        except ValueError:
-            chosen = "fusion"
-    if chosen == "fusion":
-        coarse, mesh = rough, _fused(views, outer, extent / _CELLS[1])
-    cell = extent / _CELLS[1]
-    seen = _seen(mesh, cloud, _NEAR * extent)
-    silhouettes = outer.volume(extent / _HULL_CELLS)
-    factor, scale_sigma = _scale(mesh, structure, known_length, cell)
-    found, rough_found = (
-        mass_properties(each.vertices * factor, each.triangles) for each in (mesh, coarse)
-    )
-    coverage = _share(mesh, seen)
-    sigma = _sigma(found, rough_found, scale_sigma, 1.0 - coverage)
-    scaled = mesh._replace(vertices=mesh.vertices * factor)
+    cells = [extent / count for count in _CELLS]
+    cloud = _cloud(views, outer, cells[0])
+    coarse, mesh = _SURFACES[method](views, outer, cells)
+    coverage = triangles_seen(mesh, cloud, _NEAR * extent)
+    factor, scale_sigma = _scale(mesh, structure, known_length, cells[1])
+    coarse, mesh = (each._replace(vertices=factor * each.vertices) for each in (coarse, mesh))
+    share = share_of_area(mesh, coverage)
+    doubts = Doubts(scale_sigma, factor * depth_sigma(views), 1.0 - share)
     return Body(
-        *(scaled, found, sigma, chosen, fill, cell * factor, coverage, seen),
-        *(hull * factor**3, silhouettes * factor**3),
+        mesh=mesh,
+        properties=mass_properties(mesh.vertices, mesh.triangles),
+        sigma=error_bars(mesh, coarse, doubts),
+        method=method,
+        cell=factor * cells[1],
+        coverage=share,
+        seen=coverage,
+        hull_volume=factor**3 * _hull_volume(cloud.points),
+        silhouette_volume=factor**3 * outer.volume(extent / _HULL_CELLS),
     )
 
 
@@ -155,8 +131,10 @@ def _cloud(views: list[DepthView], outer: _Outer, cell: float) -> OrientedCloud:
     return OrientedCloud(found.points[kept], found.normals[kept])
 
 
-def _poisson(cloud: OrientedCloud, depth: int) -> ClosedMesh:
-    return closed_mesh(*_main_piece(*poisson_mesh(cloud, depth)))
+def _poisson(views: list[DepthView], outer: _Outer, cells: list[float]) -> list[ClosedMesh]:
+    clouds = [_cloud(views, outer, cell) for cell in cells]
+    found = [poisson_mesh(cloud, depth) for cloud, depth in zip(clouds, _DEPTH)]
+    return [closed_mesh(*_main_piece(*each)) for each in found]
 
 
 def _main_piece(vertices: Array, triangles: IntArray) -> tuple[Array, IntArray]:
@@ -165,9 +143,14 @@ def _main_piece(vertices: Array, triangles: IntArray) -> tuple[Array, IntArray]:
     return vertices, triangles[piece == np.bincount(piece).argmax()]
 
 
-def _fused(views: list[DepthView], outer: _Outer, voxel: float) -> ClosedMesh:
-    grid = fusion.grid_about(outer.structure.points, voxel)
-    return closed_mesh(*fusion.fused_mesh(grid, outer.outside(grid.points), views))
+def _fused(views: list[DepthView], outer: _Outer, cells: list[float]) -> list[ClosedMesh]:
+    grids = [fusion.grid_about(outer.structure.points, cell) for cell in cells]
+    found = [fusion.fused_mesh(grid, fusion.near(grid, outer.outside), views) for grid in grids]
+    return [closed_mesh(*each) for each in found]
+
+
+_SURFACES = {"poisson": _poisson, "fusion": _fused}
+"""Of depth images, silhouettes, and the sides of coarse and fine cells: coarse and fine mesh."""
 
 
 def _hull_volume(points: Array) -> float:
@@ -180,40 +163,6 @@ def _hull_volume(points: Array) -> float:
 def _longest(vertices: Array) -> float:
     corners = vertices[ConvexHull(vertices).vertices]
     return float(max(np.linalg.norm(corners - corner, axis=1).max() for corner in corners))
-
-
-def _seen(mesh: ClosedMesh, cloud: OrientedCloud, reach: float) -> BoolArray:
-    """Return which triangles have points of the cloud near that face the same way."""
-    corners = mesh.vertices[mesh.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    near, index = cKDTree(cloud.points).query(corners.mean(axis=1), k=8)
-    alike = np.einsum("ti,tki->tk", normals, cloud.normals[index])
-    alike /= np.maximum(np.linalg.norm(normals, axis=1), 1e-30)[:, None]
-    return np.asarray(((near < reach) & (alike > 0.3)).any(axis=1))
-
-
-def _share(mesh: ClosedMesh, seen: BoolArray) -> float:
-    """Return the share of the area."""
-    corners = mesh.vertices[mesh.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(normals, axis=1)
-    return float(area[seen].sum() / area.sum())
-
-
-def _sigma(
-    found: MassProperties, coarse: MassProperties, scale_sigma: float, unseen: float
-) -> Array:
-    """Return the 1-sigma (10,) of volume, centre and inertia."""
-    size = np.sqrt(np.trace(found.inertia) / (2.0 * found.volume))
-    moments = np.diag(found.inertia)
-    level = np.sqrt(moments[list(TENSOR[0])] * moments[list(TENSOR[1])])
-    scale = np.array([found.volume, *3 * [size], *level])
-    changed = np.abs(packed(found) - packed(coarse))
-    powers = np.array([3.0, *3 * [0.0], *3 * [5.0], *3 * [0.0]])
-    shares = np.array([1.0, *3 * [1.0 / 3.0], *6 * [5.0 / 3.0]])
-    known = scale_sigma if np.isfinite(scale_sigma) else 0.0
-    parts = (changed, scale * powers * known, scale * shares * unseen)
-    return np.asarray(np.linalg.norm(parts, axis=0))
 
 
 def _scale(

@@ -1,20 +1,15 @@
 """Points with outward normals from depth images, averaged over the images."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.reconstruction.depth import Depth, DepthView
-from debrisest.vision.libraries import vision_library
+from debrisest.reconstruction.depth import DepthView
+from debrisest.reconstruction.normals import facing_surface
 
-_SMOOTHED_PX = 2.0
-_STEP_PX = 4
-"""To the neighbours from which a normal is taken."""
 _EVERY_PX = 2
-_JUMP = 0.01
-"""Relative difference of the depth from the smoothed one at which it ends."""
 _LEAST_COSINE = 0.35
 """Of the normal to the line of sight."""
 _LEAST_POINTS = 3
@@ -58,33 +53,9 @@ def dense_cloud(views: Sequence[DepthView], cell: float) -> OrientedCloud:
 
 def _points(found: DepthView) -> tuple[Array, Array]:
     """Return points (point, 3) and unit normals of a depth image in the axes of the structure."""
-    view, depth = found
-    smooth = _smoothed(depth)
-    v, u = np.indices(depth.shape)
-    focal, centre = view.matrix[0, 0], view.matrix[:2, 2]
-    rays = np.stack([(u - centre[0]) / focal, (v - centre[1]) / focal, np.ones_like(u)], axis=-1)
-    space = rays * smooth[..., None]
-    along_u, along_v = (np.full_like(space, np.nan) for _ in range(2))
-    n = _STEP_PX
-    along_u[:, n:-n] = space[:, 2 * n :] - space[:, : -2 * n]
-    along_v[n:-n] = space[2 * n :] - space[: -2 * n]
-    normals = np.cross(along_v, along_u)[::_EVERY_PX, ::_EVERY_PX].reshape(-1, 3)
-    normals /= np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-30)
-    space = space[::_EVERY_PX, ::_EVERY_PX].reshape(-1, 3)
-    cosine = -(normals * space).sum(-1) / np.linalg.norm(space, axis=-1)
+    space, normals, cosine = (
+        each[::_EVERY_PX, ::_EVERY_PX].reshape(-1, *each.shape[2:])
+        for each in facing_surface(found)
+    )
     good = cosine > _LEAST_COSINE
-    return (space[good] - view.translation) @ view.rotation, normals[good] @ view.rotation
-
-
-def _smoothed(depth: Depth) -> Array:
-    """Return the depth, its inverse smoothed, NaN where it jumps."""
-    cv2: Any = vision_library("cv2")
-    known = np.isfinite(depth)
-    inverse = np.where(known, 1.0 / np.where(known, depth, 1.0), 0.0).astype(np.float32)
-    inverse = cv2.medianBlur(inverse, 5)
-    known &= inverse > 0.0
-    weight = cv2.GaussianBlur(known.astype(np.float32), (0, 0), _SMOOTHED_PX)
-    smooth = cv2.GaussianBlur(np.where(known, inverse, np.float32(0)), (0, 0), _SMOOTHED_PX)
-    smooth /= np.maximum(weight, 1e-3)
-    known &= np.abs(smooth - inverse) < _JUMP * smooth
-    return np.where(known, 1.0 / np.maximum(smooth, 1e-9), np.nan)
+    return found.view.from_camera(space[good]), normals[good]

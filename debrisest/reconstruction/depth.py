@@ -1,8 +1,8 @@
-"""Distances at the pixels of an image from a second one, by semi-global matching.
+"""Distances at the pixels of an image from a second one, by semi-global matching, refined.
 
-Source: Hirschmueller 2008. Two cameras of a rig, or one camera at two times, between which the
-body has turned, are treated alike: both images are turned about their cameras until corresponding
-points lie in the same row, and cut to the body.
+Source: Hirschmueller 2008; `subpixel` does the last half pixel. Two cameras of a rig, or one camera
+at two times, between which the body has turned, are treated alike: both images are turned about
+their cameras until corresponding points lie in the same row, and cut to the body.
 """
 
 from collections.abc import Iterator
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from debrisest.arrays import Array, BoolArray
 from debrisest.reconstruction.silhouettes import Frames
 from debrisest.reconstruction.structure import Rig, Structure
+from debrisest.reconstruction.subpixel import refined
 from debrisest.vision.libraries import vision_library
 
 _BLOCK = 5
@@ -43,6 +44,10 @@ class View(NamedTuple):
         """Return points (..., 3) of axes r in the camera's."""
         return np.asarray(points @ self.rotation.T + self.translation)
 
+    def from_camera(self, points: Array) -> Array:
+        """Return points (..., 3) of the camera's axes in axes r."""
+        return np.asarray((points - self.translation) @ self.rotation)
+
 
 class DepthView(NamedTuple):
     """A depth image and from where it was taken."""
@@ -50,6 +55,8 @@ class DepthView(NamedTuple):
     view: View
     depth: Depth
     """Along the line of sight's z (row, column), m; NaN where it is not known."""
+    pixel_m: float = np.nan
+    """What a pixel of disparity makes, m, at the median depth."""
 
 
 def depth_views(
@@ -119,6 +126,7 @@ class _Rectified:
         ]
         self._offset = low[0][0] - low[1][0]
         self._span = focal * float(np.linalg.norm(baseline))
+        self._distance = float(np.median(seen[0][:, 2]))
         disparity = pixels[0][:, 0] - pixels[1][:, 0] - self._offset
         self._bounds = disparity.min() - _MARGIN_PX, disparity.max() + _MARGIN_PX
         self._maps = [
@@ -130,9 +138,17 @@ class _Rectified:
 
     def depth(self, pair: tuple[Frames, Frames], mask: BoolArray) -> DepthView:
         """Return the depth from the first view, in the silhouette (row, column)."""
-        linear = self._cv2.INTER_LINEAR
-        images = [self._cv2.remap(image, *maps, linear) for image, maps in zip(pair, self._maps)]
+        linear, cubic = self._cv2.INTER_LINEAR, self._cv2.INTER_CUBIC
+        one, other = (self._cv2.remap(each, *maps, cubic) for each, maps in zip(pair, self._maps))
         inside = self._cv2.remap(mask.astype(np.uint8) * 255, *self._maps[0], linear) > 127
+        found, known = refined(one, other, *self._matched([one, other], inside))
+        disparity = np.where(known, found + self._offset, 1.0)
+        depth = np.where(known & (disparity > 0), self._span / disparity, np.nan)
+        view = self._one._replace(matrix=self._matrix[0])
+        return DepthView(view, depth.astype(np.float32), self._distance**2 / self._span)
+
+    def _matched(self, images: list[Frames], inside: BoolArray) -> tuple[Depth, BoolArray]:
+        """Return the disparity (row, column), px, to a fraction of a pixel, where it is known."""
         least = int(np.floor(self._bounds[0]))
         count = 16 * int(np.ceil((self._bounds[1] - least) / 16.0))
         edge = [(0, 0), (max(0, least + count), max(0, -least))]
@@ -150,7 +166,4 @@ class _Rectified:
         wide = [np.pad(image, edge) for image in images]
         found = matcher.compute(*wide).astype(np.float32) / 16.0
         found = found[:, edge[1][0] : edge[1][0] + inside.shape[1]]
-        known = inside & (found >= least)
-        disparity = np.where(known, found + self._offset, 1.0)
-        depth = np.where(known & (disparity > 0), self._span / disparity, np.nan)
-        return DepthView(self._one._replace(matrix=self._matrix[0]), depth.astype(np.float32))
+        return found, inside & (found >= least)

@@ -1,11 +1,12 @@
 """A body's surface from silhouettes and depth images, fused in voxels.
 
-Signed distances to the surfaces of the depth images are averaged (Curless and Levoy 1996); what
-lies outside of the silhouettes of several images is carved away; the surface is that of marching
-cubes.
+Signed distances to the surfaces of the depth images are averaged (Curless and Levoy 1996), those of
+surfaces that face different sides apart, so that the two sides of a thin panel do not meet
+(Splietker and Behnke 2019 keep directions apart for the same reason). What lies outside of the
+silhouettes of several images is carved away; the surface is that of marching cubes.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,11 +15,17 @@ from scipy import ndimage
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.reconstruction.depth import DepthView
+from debrisest.reconstruction.normals import facing_surface
 from debrisest.reconstruction.structure import Structure
 from debrisest.vision.libraries import vision_library
 
-_TRUNCATED = 3.0
+_TRUNCATED = 2.0
 """Voxels: distances count no further than this."""
+_SIDES = np.concatenate([np.eye(3), -np.eye(3)])
+_LEAST_COSINE = 0.25
+"""Of the normal to the line of sight."""
+_LEAST_WEIGHT = 1.0
+"""Of a side's surface, about three views, below which it is not known."""
 _DOUBTS = 3
 """Views that must see a voxel outside of the silhouette before it is carved away."""
 
@@ -69,6 +76,21 @@ def outside_silhouettes(
     return np.asarray(worst[-1])
 
 
+def near(grid: Grid, outside: Callable[[Values], Values]) -> Values:
+    """Return how far a grid's points lie outside of silhouettes (voxel,), m, exact near and within.
+
+    What is a coarse voxel or more outside by every fourth point is not asked again.
+    """
+    shape = (np.asarray(grid.shape) + 3) // 4 + 1
+    coarse = Grid(grid.origin, 4.0 * grid.voxel, (int(shape[0]), int(shape[1]), int(shape[2])))
+    rough = outside(coarse.points).reshape(coarse.shape)
+    places = tuple(np.rint(np.arange(n) / 4.0).astype(np.int64) for n in grid.shape)
+    found = rough[np.ix_(*places)].ravel()
+    asked = np.flatnonzero(found < coarse.voxel)
+    found[asked] = outside(grid.points[asked])
+    return found
+
+
 def _insert(worst: Values, values: Values) -> None:
     """Keep the largest values in ``worst (place, n)``, in descending order."""
     for place in worst:
@@ -98,24 +120,38 @@ def _pixels(
     return (row, np.where(inside, u, 0).astype(np.int64)), np.asarray(inside)
 
 
-def distance_to_surfaces(
-    points: Values, views: Sequence[DepthView], reach: float
-) -> tuple[Values, Values]:
-    """Return the mean distance (n,) of points (n, 3) before the surfaces, and its weight.
+def distance_to_surfaces(points: Values, views: Sequence[DepthView], reach: float) -> Values:
+    """Return how far points (n, 3) lie before the surfaces (n,), in units of ``reach``, m.
 
-    It is in units of ``reach``, m, negative within the body; further than one of them behind a
-    surface a point does not count.
+    Negative: within the body; -1 where no surface is near. Surfaces that face the same of six
+    sides are averaged, with the cosine of the line of sight as weight; what lies before the
+    surface of any side is outside. An average over all sides would fill, or lose, what is thinner
+    than ``reach``: there each side of a panel counts as the depth of the other one.
     """
-    total, weight = np.zeros((2, len(points)), dtype=np.float32)
-    for view, depth in views:
-        seen = view.seen(points.astype(np.float64)).astype(np.float32)
-        pixel, inside = _pixels(seen, view.matrix, depth.shape)
-        ahead = (depth[pixel] - seen[:, 2]) / reach
-        counts = inside & (ahead > -1.0)
-        total += np.where(counts, np.minimum(ahead, 1.0), 0.0)
-        weight += counts
-    mean = total / np.maximum(weight, np.float32(1.0))
-    return mean.astype(np.float32), weight
+    total, weight = np.zeros((2, len(_SIDES), len(points)), dtype=np.float32)
+    for found in views:
+        ahead, sides = _before(points, found, reach)
+        total += sides * ahead
+        weight += sides
+    mean = total / np.maximum(weight, np.float32(1e-6))
+    return np.asarray(np.where(weight > _LEAST_WEIGHT, mean, np.float32(-1.0)).max(axis=0))
+
+
+def _before(points: Values, found: DepthView, reach: float) -> tuple[Values, Values]:
+    """Return how far points lie before what a depth image shows, and as the surface of which side.
+
+    (n,) within one ``reach``, and weights (side, n): zero where a point lies further behind.
+    """
+    surface = facing_surface(found)
+    seen = found.view.seen(points.astype(np.float64)).astype(np.float32)
+    pixel, inside = _pixels(seen, found.view.matrix, found.depth.shape)
+    cosine = surface.cosine[pixel]
+    ahead = (surface.points[pixel][:, 2] - seen[:, 2]) * cosine / reach
+    counts = inside & (cosine > _LEAST_COSINE) & (ahead > -1.0)
+    facing = surface.normals[pixel] @ _SIDES.T
+    sides = np.where(facing > 0.5, facing**2, 0.0).T * cosine
+    weights = np.where(counts, sides, 0.0).astype(np.float32)
+    return np.where(counts, np.minimum(ahead, 1.0), 0.0).astype(np.float32), weights
 
 
 def fused_mesh(grid: Grid, outside: Values, views: Sequence[DepthView]) -> tuple[Array, IntArray]:
@@ -128,8 +164,7 @@ def fused_mesh(grid: Grid, outside: Values, views: Sequence[DepthView]) -> tuple
     reach = _TRUNCATED * grid.voxel
     field = np.clip(outside / reach, -1.0, 1.0)
     left = np.flatnonzero(field < 1.0)
-    ahead, weight = distance_to_surfaces(grid.points[left], views, reach)
-    field[left] = np.maximum(field[left], np.where(weight > 0, ahead, -1.0))
+    field[left] = np.maximum(field[left], distance_to_surfaces(grid.points[left], views, reach))
     field = field.reshape(grid.shape)
     solid = _large(field < 0.0)
     field = np.where(solid, np.minimum(field, -1e-3), np.maximum(field, 1e-3))

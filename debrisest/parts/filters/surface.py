@@ -11,13 +11,12 @@ from debrisest.outcome import Outcome, sentences
 from debrisest.parts.recoveries.structure import padded
 from debrisest.problems.shape.model import ShapeModel
 from debrisest.reconstruction.body import (
-    COMPACT,
     LEAST_COVERAGE,
     Body,
     Method,
-    packed,
     reconstructed_body,
 )
+from debrisest.reconstruction.error_bars import packed
 from debrisest.roles import FilterPart, Given
 
 
@@ -29,14 +28,20 @@ class SurfaceStatus(Outcome):
     UNSEEN = 2, "too much of the body was never seen: no number is told; let it turn further"
 
 
+_METHODS: dict[Method, str] = {
+    "fusion": "silhouettes fused with depth: closes whatever is seen and keeps thin panels",
+    "poisson": "screened Poisson surface of the dense cloud: for compact bodies",
+}
+
+
 class Surface(FilterPart):
-    """Screened Poisson of a dense cloud, or silhouettes fused with depth: the data choose."""
+    """A closed surface from depth and silhouettes."""
 
     takes = "shape_model"
     makes_start = True
     libraries = ("cv2", "pycolmap", "skimage")
     kind: Literal["surface"]
-    method: Literal["poisson", "fusion"] | None = Field(None, description="default: by the data")
+    method: Method = Field("fusion", description="; ".join(_METHODS.values()))
 
     def run(self, model: ShapeModel, given: Given) -> Estimates:
         """Return volume, centre and inertia of density one, the same at all epochs, and meshes."""
@@ -78,19 +83,10 @@ def _meshes(bodies: list[Body]) -> Data:
         "triangle_seen": np.stack(
             [padded(body.seen.astype(np.float64), triangles) for body in bodies]
         ),
-        "mesh_method": np.array([_why(body.method, body.fill) for body in bodies]),
+        "mesh_method": np.array([_METHODS[body.method] for body in bodies]),
         "mended": np.array(["; ".join(body.mesh.mended) for body in bodies]),
         "cell": np.array([body.cell for body in bodies]),
         "surface_seen": np.array([body.coverage for body in bodies]),
         "hull_volume": np.array([body.hull_volume for body in bodies]),
         "silhouette_volume": np.array([body.silhouette_volume for body in bodies]),
     }
-
-
-def _why(method: Method, fill: float) -> str:
-    filled = f"the body fills {fill:.0%} of its convex hull"
-    if method == "poisson":
-        return f"screened Poisson surface of the dense cloud: {filled}"
-    if fill > COMPACT:
-        return f"silhouettes fused with depth: {filled}, but its Poisson surface does not close"
-    return f"silhouettes fused with depth: {filled}, less than the {COMPACT:.0%} of a compact one"
