@@ -79,14 +79,15 @@ def outside_silhouettes(
 def near(grid: Grid, outside: Callable[[Values], Values]) -> Values:
     """Return how far a grid's points lie outside of silhouettes (voxel,), m, exact near and within.
 
-    What is a coarse voxel or more outside by every fourth point is not asked again.
+    What is six voxels or more outside by the nearest of every fourth point is not asked again: it is
+    at least two voxels outside.
     """
     shape = (np.asarray(grid.shape) + 3) // 4 + 1
     coarse = Grid(grid.origin, 4.0 * grid.voxel, (int(shape[0]), int(shape[1]), int(shape[2])))
     rough = outside(coarse.points).reshape(coarse.shape)
     places = tuple(np.rint(np.arange(n) / 4.0).astype(np.int64) for n in grid.shape)
     found = rough[np.ix_(*places)].ravel()
-    asked = np.flatnonzero(found < coarse.voxel)
+    asked = np.flatnonzero(found < 6.0 * grid.voxel)
     found[asked] = outside(grid.points[asked])
     return found
 

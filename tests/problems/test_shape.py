@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from debrisest.filters.estimates import Estimates
 from debrisest.problems.shape.problem import ConstantDensityShape
-from debrisest.reconstruction.body import packed
+from debrisest.reconstruction.error_bars import packed
 from debrisest.vision.polyhedron import mass_properties
 from tests.reconstruction.solids import box
 

@@ -71,6 +71,50 @@ def test_silhouettes_and_depth_fuse_to_a_sphere():
     check_sphere(*fusion.fused_mesh(grid, outside, views), within=0.04)
 
 
+def plate_depth(turn, half):
+    """Distance along z of a box about the origin, in closed form: where rays enter its slabs."""
+    v, u = np.indices(SHAPE)
+    rays = np.stack([(u - 59.5) / FOCAL, (v - 59.5) / FOCAL, np.ones(SHAPE)], axis=-1) @ turn
+    origin = -RANGE * turn[2]
+    with np.errstate(divide="ignore"):
+        ends = np.stack([(side * half - origin) / rays for side in (-1, 1)])
+    enter, leave = ends.min(axis=0).max(axis=-1), ends.max(axis=0).min(axis=-1)
+    return np.where(enter < leave, enter, np.nan).astype(np.float32), enter < leave
+
+
+def test_a_panel_thinner_than_the_reach_keeps_its_two_sides():
+    pytest.importorskip("cv2")
+    pytest.importorskip("skimage")
+    half = np.array([1.2, 0.9, 0.06])
+    turns = np.stack([looking(direction) for direction in directions(60)])
+    depths, masks = zip(*(plate_depth(turn, half) for turn in turns))
+    shift = np.array([0.0, 0.0, RANGE])
+    views = [DepthView(View(MATRIX, *at), depth) for *at, depth in zip(turns, [shift] * 60, depths)]
+    corners = half * (np.indices((2, 2, 2)).reshape(3, -1).T * 2 - 1)
+    seen = np.ones((60, 8), dtype=bool)
+    structure = Structure(turns, np.tile(shift, (60, 1)), corners, seen, 0.0, 0.0)
+    grid = fusion.grid_about(corners, 0.06)
+
+    def outside(points):
+        return fusion.outside_silhouettes(points, np.stack(masks), MATRIX, structure)
+
+    mesh = closed_mesh(*fusion.fused_mesh(grid, fusion.near(grid, outside), views))
+    found = mass_properties(mesh.vertices, mesh.triangles)
+    assert found.volume == pytest.approx(8 * half.prod(), rel=0.12)
+
+
+def test_a_grid_asked_near_the_body_only_has_the_same_surface():
+    grid = fusion.Grid(np.full(3, -1.5), 0.05, (61, 58, 60))
+
+    def outside(points):
+        return (np.linalg.norm(points, axis=1) - 1.0).astype(np.float32)
+
+    whole, part = outside(grid.points), fusion.near(grid, outside)
+    np.testing.assert_array_equal(part < 0, whole < 0)
+    close = np.abs(whole) < 0.1
+    np.testing.assert_array_equal(part[close], whole[close])
+
+
 def test_silhouettes_hold_the_sphere_and_not_much_more():
     pytest.importorskip("cv2")
     _, masks, structure = sphere_views()
