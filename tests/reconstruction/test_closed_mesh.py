@@ -139,3 +139,9 @@ def test_no_faces_and_points_that_are_no_numbers_are_refused():
 def test_faces_without_area_are_removed():
     points, faces = box()
     mended((points, np.concatenate([faces, [[0, 0, 1]]])), "1 face without area", 3.84)
+
+
+def test_a_cavity_outside_of_its_solid_is_turned_to_a_solid():
+    """As it stands its moments are those of no body: the largest exceeds the sum of the others."""
+    far = box((0.6, 0.6, 0.6), (5.0, 0.0, 0.0))
+    mended(together(box(), inverted(far)), "1 solid inside out", 3.84 + 0.216)
