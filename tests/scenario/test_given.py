@@ -8,7 +8,9 @@ from pydantic import ValidationError
 
 from debrisest.clock import Clock
 from debrisest.draws import Draws
+from debrisest.parts.starts.drawn_pose import DrawnPose
 from debrisest.parts.starts.given import GivenGuess
+from debrisest.reconstruction.mesh_data import start_table
 
 CSV = "name,component,value,sigma\nrate_b,2,0.2,0.02\nrate_b,1,0.1,0.01\nrate_b,3,0.3,0.03\n"
 
@@ -78,3 +80,25 @@ def test_a_table_that_is_wrong_is_told(tmp_path: Path, text: str | None, words: 
         (tmp_path / "guess.csv").write_text(text)
     with pytest.raises(ValidationError, match=words):
         given(tmp_path, file="guess.csv")
+
+
+def test_ratios_of_a_reconstructed_body_take_the_place_of_drawn_ones(tmp_path: Path) -> None:
+    ratios = {"moment_ratios": np.array([0.2, -0.1]), "moment_ratios_sigma": np.array([0.03, 0.02])}
+    start_table(tmp_path / "start.csv", ratios)
+    guess = {"kind": "drawn_pose", "position_sigma_m": 1, "velocity_sigma_m_s": 1, "q_sigma": 0.01}
+    guess |= {"rate_sigma_deg_s": 1, "inertia_ratio_sigma": None, "point_sigma_m": 1}
+    drawn = DrawnPose.model_validate(guess)
+    assert "start_inertia_ratio" not in drawn.given
+    truth = {
+        "true_position": np.zeros((2, 1, 3)),
+        "true_velocity": np.zeros((2, 1, 3)),
+        "true_rate_l": np.zeros((2, 1, 3)),
+        "true_q_lt": np.tile([1.0, 0, 0, 0], (2, 1, 1)),
+        "true_inertia_ratio": np.zeros((2, 2)),
+        "true_point_b": np.zeros((2, 6, 3)),
+    }
+    data = drawn.simulate(truth, Clock.regular(2, 1), Draws(0, "", [0, 1]))
+    assert set(drawn.given) <= set(data)
+    data |= simulated(given(tmp_path, file="start.csv"))
+    np.testing.assert_array_equal(data["start_inertia_ratio"], [[0.2, -0.1]] * 2)
+    np.testing.assert_array_equal(data["start_inertia_ratio_sigma"], [[0.03, 0.02]] * 2)

@@ -27,11 +27,17 @@ class DrawnPose(SimulationPart):
     velocity_sigma_m_s: Positive
     rate_sigma_deg_s: Positive
     q_sigma: Positive = Field(description="of every component; twice that is the angle's")
-    inertia_ratio_sigma: Positive
+    inertia_ratio_sigma: Positive | None = Field(description="null: another start gives the ratios")
     point_sigma_m: Positive
     bodies_only: bool = Field(
         False, description="draw inertia ratios again until they obey the triangle inequality"
     )
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Return the datasets that are drawn."""
+        left_out = () if self.inertia_ratio_sigma else ("start_inertia_ratio",)
+        return tuple(name for name in self.knows if name not in left_out)
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the drawn state and its known sigma; the quaternion has unit norm again."""
@@ -45,17 +51,21 @@ class DrawnPose(SimulationPart):
         }
         result: Data = {}
         for name, sigma in sigmas.items():
+            if sigma is None:
+                continue
             constant = name in ("inertia_ratio", "point_b")
             true = data[f"true_{name}"] if constant else data[f"true_{name}"][:, 0]
             result |= drawn_about(f"start_{name}", true, sigma, draws)
         result["start_q_lt"] = quaternion.normalize(result["start_q_lt"])
-        if self.bodies_only:
-            result["start_inertia_ratio"] = self._body(data["true_inertia_ratio"], draws)
+        if self.bodies_only and self.inertia_ratio_sigma:
+            true, sigma = data["true_inertia_ratio"], self.inertia_ratio_sigma
+            result["start_inertia_ratio"] = _body(true, sigma, draws)
         return result
 
-    def _body(self, true: Array, draws: Draws) -> Array:
-        """Return the first ratios (run, 2) drawn about the true ones that a body can have."""
-        noise = draws.normal(Stream.INITIAL_ERROR, (_TRIES, 2))
-        drawn = true[:, None] + self.inertia_ratio_sigma * noise
-        first = (np.abs(slopes(drawn)) < 1.0).all(-1).argmax(axis=1)
-        return np.asarray(drawn[np.arange(len(true)), first])
+
+def _body(true: Array, sigma: float, draws: Draws) -> Array:
+    """Return the first ratios (run, 2) drawn about the true ones that a body can have."""
+    noise = draws.normal(Stream.INITIAL_ERROR, (_TRIES, 2))
+    drawn = true[:, None] + sigma * noise
+    first = (np.abs(slopes(drawn)) < 1.0).all(-1).argmax(axis=1)
+    return np.asarray(drawn[np.arange(len(true)), first])
