@@ -146,7 +146,7 @@ def _main_piece(vertices: Array, triangles: IntArray) -> tuple[Array, IntArray]:
 def _fused(views: list[DepthView], outer: _Outer, cells: list[float]) -> list[ClosedMesh]:
     grids = [fusion.grid_about(outer.structure.points, cell) for cell in cells]
     found = [fusion.fused_mesh(grid, fusion.near(grid, outer.outside), views) for grid in grids]
-    return [closed_mesh(*each) for each in found]
+    return [closed_mesh(*each, of_voxels=True) for each in found]
 
 
 _SURFACES = {"poisson": _poisson, "fusion": _fused}

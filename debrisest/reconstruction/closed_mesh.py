@@ -32,13 +32,14 @@ class ClosedMesh(NamedTuple):
     """What was wrong with it, with counts, in words."""
 
 
-def closed_mesh(vertices: Array, triangles: IntArray) -> ClosedMesh:
+def closed_mesh(vertices: Array, triangles: IntArray, of_voxels: bool = False) -> ClosedMesh:
     """Return the mesh, mended where needed; ``vertices (vertex, 3)``, ``triangles (triangle, 3)``.
 
     Mended: vertices and faces that are there more than once, faces without area, faces wound the
     other way, a solid that is inside out, solids that overlap. Raises ValueError, with counts, for
     a mesh that is open, flat or passes through itself, for an edge of more than two faces, and for
-    an inertia that no body has.
+    an inertia that no body has. The surface ``of_voxels`` cannot cross another or itself, so that
+    this is not looked for, which takes minutes where there are hundreds of thousands of faces.
     """
     vertices, triangles, mended = _without_copies(*_merged(vertices, triangles))
     _require_closed(vertices, triangles)
@@ -48,7 +49,9 @@ def closed_mesh(vertices: Array, triangles: IntArray) -> ClosedMesh:
     triangles, flipped = _outward(vertices, wound.triangles, wound.piece)
     if flipped:
         mended.append(f"{_many(flipped, 'solid')} inside out: turned")
-    mesh, said = _without_overlaps(vertices, triangles, wound.piece)
+    mesh, said = ClosedMesh(vertices, triangles), list[str]()
+    if not of_voxels:
+        mesh, said = _without_overlaps(vertices, triangles, wound.piece)
     _require_body(mesh)
     return mesh._replace(mended=(*mended, *said))
 

@@ -79,8 +79,8 @@ def outside_silhouettes(
 def near(grid: Grid, outside: Callable[[Values], Values]) -> Values:
     """Return how far a grid's points lie outside of silhouettes (voxel,), m, exact near and within.
 
-    What is six voxels or more outside by the nearest of every fourth point is not asked again: it is
-    at least two voxels outside.
+    What is six voxels or more outside by the nearest of every fourth point is not asked again: it
+    is at least two voxels outside.
     """
     shape = (np.asarray(grid.shape) + 3) // 4 + 1
     coarse = Grid(grid.origin, 4.0 * grid.voxel, (int(shape[0]), int(shape[1]), int(shape[2])))
