@@ -26,7 +26,7 @@ from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.scenario.schema import ScenarioFile, scenario_model
 from debrisest.shipped import scenario_path
 from debrisest.show.tables.published import check_published
-from debrisest.show.tables.tabulate import chosen, tabulate, write_tables
+from debrisest.show.tables.tabulate import chosen, read_by_tables, tabulate, write_tables
 
 _MOST_REASONS = 3
 
@@ -70,7 +70,8 @@ def run(
     check_selection([scenario], selection)
     check_published(scenario)
     failures = bring_up_to_date([scenario], Path(out), selection, Machine(jobs, quiet=quiet))
-    rows, _ = tabulate(scenario, Path(out), plan(scenario, Path(out), Selection(runs)))
+    wanted = plan(scenario, Path(out), Selection(runs), read_by_tables(scenario))
+    rows, _ = tabulate(scenario, Path(out), wanted)
     if rows.empty and scenario.common.measured is None:
         why = [f"{name} failed: {reason}" for name, reason in failures.items()]
         told = f"{scenario.name}: there are no tables, since no step gave a result"

@@ -9,6 +9,7 @@ statistic is where that of a consistent estimator lies with a probability of 95 
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.assessment.chi_square import quantile, upper_quantile
 from debrisest.filters.linear_algebra import solve
 
 CONFIDENCE = 0.95
@@ -44,11 +45,9 @@ def chart_free(cost_of_truth: Array, cost_of_estimate: Array, n: int) -> Array:
 
 def interval(dof: Array, confidence: float = CONFIDENCE) -> tuple[Array, Array]:
     """Two-sided chi-square interval per degree of freedom of ``dof`` degrees in all."""
-    from scipy.stats import chi2
-
     tail = 0.5 * (1.0 - confidence)
-    count = np.asarray(dof, dtype=np.float64)
-    return np.asarray(chi2.ppf(tail, count) / count), np.asarray(chi2.isf(tail, count) / count)
+    count = np.where(np.asarray(dof) > 0, dof, np.nan)
+    return quantile(tail, count) / count, upper_quantile(tail, count) / count
 
 
 def consistent_interval(
@@ -116,11 +115,11 @@ def _median_quantiles(dof: Array, at: Array) -> Array:
     n / (4 (n + 1) (n + 2)). The median of two is their mean, a chi-square itself. Runs of different
     freedom are taken at their harmonic mean.
     """
-    from scipy.stats import beta, chi2
+    from scipy.special import betaincinv
 
     runs, together = len(dof), pooled(dof)
     if runs <= 2:
-        return np.asarray(chi2.ppf(at, together) / together)
+        return quantile(at, together) / together
     each = together / runs
     half = 0.5 * (runs + 1) if runs % 2 else 0.5 * ((runs + 1) * (runs + 2) / runs - 1)
-    return np.asarray(chi2.ppf(beta.ppf(at, half, half), each) / each)
+    return quantile(betaincinv(half, half, at), each) / each

@@ -81,10 +81,10 @@ def _below(ordered: Array, share: float) -> float:
     between the two that enclose 2.5 % Nyblom's weights interpolate ("Note on interpolated order
     statistics", 1992).
     """
-    from scipy.stats import binom
+    from scipy.special import bdtr
 
     n = len(ordered)
-    above = binom.cdf(np.arange(n), n, share)
+    above = bdtr(np.arange(n), n, share)
     rank = int(np.searchsorted(above, _TAIL, side="right"))
     if rank == 0:
         return float(ordered[0]) if above[0] <= _LARGEST_TAIL else np.nan

@@ -95,6 +95,7 @@ def current_estimates(scenario: "LoadedScenario", out: Path, selection: "Selecti
 
     What is out of date is told.
     """
+    from debrisest.results.address import STAGES
     from debrisest.results.open import find_results
     from debrisest.results.status import up_to_date
     from debrisest.runner.plan import Selection, Step, plan
@@ -103,7 +104,8 @@ def current_estimates(scenario: "LoadedScenario", out: Path, selection: "Selecti
     files: dict[Path, Step] = {}
     for case, estimator in _asked(scenario, selection):
         runs = there.runs(case, estimator, "filter") or selection.runs
-        for step in plan(scenario, out, Selection(runs, [case], [estimator], "filter")):
+        selected = Selection(runs, [case], [estimator], "filter")
+        for step in plan(scenario, out, selected, STAGES):
             if step.path not in files or step.runs > files[step.path].runs:
                 files[step.path] = step
     stale = [one for one in files.values() if one.reason]

@@ -24,6 +24,10 @@ Configs = Annotated[
 Out = Annotated[Path, Option("--out", help="Folder of results.")]
 Jobs = Annotated[int | None, Option("--jobs", min=1, help="Processes (default: all cores).")]
 Runs = Annotated[int | None, Option("--runs", min=1, help="Runs per case.")]
+Keep = Annotated[
+    str | None,
+    Option("--keep", metavar="N|all", help="Runs whose trajectories are kept (default: 1)."),
+]
 CaseNames = Annotated[list[str] | None, Option("--case", help="Only this case (repeatable).")]
 EstimatorNames = Annotated[
     list[str] | None, Option("--estimator", help="Only this estimator (repeatable).")

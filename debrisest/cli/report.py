@@ -41,20 +41,22 @@ def report(
 
     from debrisest.errors import UserError
     from debrisest.files import replacing
+    from debrisest.results.address import STAGES
     from debrisest.results.open import find_results
     from debrisest.results.status import up_to_date
     from debrisest.runner.plan import Selection, plan
     from debrisest.show.report.chapter import chapter
     from debrisest.show.report.figures import pictures
     from debrisest.show.report.page import page
-    from debrisest.show.tables.tabulate import chosen, tabulate
+    from debrisest.show.tables.tabulate import chosen, read_by_tables, tabulate
 
     scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
     chapters = []
     for scenario in scenarios:
-        rows, _ = tabulate(scenario, out, plan(scenario, out, Selection(selection.runs)))
-        steps = plan(scenario, out, selection)
+        wanted = plan(scenario, out, Selection(selection.runs), read_by_tables(scenario))
+        rows, _ = tabulate(scenario, out, wanted)
+        steps = plan(scenario, out, selection, STAGES)
         results = up_to_date(find_results(out / scenario.name), steps)
         if not results.chunks:
             print(f"left out of the report: {scenario.name}: no results", file=sys.stderr)

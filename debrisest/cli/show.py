@@ -86,8 +86,9 @@ def plot(
     quiet: Unprinted = False,
 ) -> None:
     """Draw the figures of the results that are up to date, by default as PNG and SVG."""
+    from debrisest.results.address import STAGES
     from debrisest.runner.plan import plan
-    from debrisest.show.plots.draw import Asked, check_asked, draw_all
+    from debrisest.show.plots.draw import Asked, check_asked, draw_all, without_trajectories
     from debrisest.show.plots.files import USUAL
 
     wanted = Asked(figure or (), run, form or USUAL)
@@ -95,9 +96,13 @@ def plot(
     scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
     asked = [one for one in scenarios if set(one.cases) & set(selection.cases or one.cases)]
-    drawn = [
-        path for one in asked for path in draw_all(one, out, plan(one, out, selection), wanted)
-    ]
+    drawn: list[Path] = []
+    for one in asked:
+        steps = plan(one, out, selection, STAGES)
+        drawn += draw_all(one, out, steps, wanted)
+        if lacking := without_trajectories(one, out, steps, wanted):
+            more = f" (and {len(lacking) - 1} more)" if len(lacking) > 1 else ""
+            print(f"not all is drawn: {lacking[0]}{more}", file=sys.stderr)
     if not quiet:
         print(*drawn, sep="\n")
 
@@ -141,13 +146,14 @@ def show_tables(
     from debrisest.runner.plan import Selection, plan
     from debrisest.show.tables.cells import unexpected
     from debrisest.show.tables.render import render_all
-    from debrisest.show.tables.tabulate import chosen, tabulate, write_tables
+    from debrisest.show.tables.tabulate import chosen, read_by_tables, tabulate, write_tables
 
     wrong: list[str] = []
     unwritten: list[OSError] = []
     shown: list[tuple[LoadedScenario, DataFrame]] = []
     for scenario in scenarios:
-        rows, stale = tabulate(scenario, out, plan(scenario, out, Selection(selection.runs)))
+        wanted = plan(scenario, out, Selection(selection.runs), read_by_tables(scenario))
+        rows, stale = tabulate(scenario, out, wanted)
         asked = partial(selection.asks_for, means=scenario.common.tables.means)
         for step in stale[:1]:
             more = f" (and {len(stale) - 1} more)" if len(stale) > 1 else ""

@@ -20,6 +20,7 @@ from debrisest.cli.options import (
     Force,
     Format,
     Jobs,
+    Keep,
     Out,
     Plugins,
     Quiet,
@@ -43,6 +44,7 @@ def _command(last_stage: str, help: str) -> Callable[..., None]:
         out: Out = RESULTS,
         jobs: Jobs = None,
         runs: Runs = None,
+        keep: Keep = None,
         case: CaseNames = None,
         estimator: EstimatorNames = None,
         settings: Settings = None,
@@ -53,7 +55,7 @@ def _command(last_stage: str, help: str) -> Callable[..., None]:
         cluster: Cluster = None,
         quiet: Quiet = False,
     ) -> None:
-        scenarios = computable(load_all(configs, settings, plugins, variant))
+        scenarios = computable(load_all(configs, _with_keep(settings, keep), plugins, variant))
         selection = select(scenarios, runs, case, estimator, last_stage, force)
         exit_if(bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
 
@@ -71,6 +73,7 @@ def sweep(
     out: Out = RESULTS,
     jobs: Jobs = None,
     runs: Runs = None,
+    keep: Keep = None,
     case: CaseNames = None,
     estimator: EstimatorNames = None,
     settings: Settings = None,
@@ -83,7 +86,7 @@ def sweep(
     check: Check = False,
 ) -> None:
     """Do everything for all cases, then write and print the tables."""
-    scenarios = computable(load_all(configs, settings, plugins, variant))
+    scenarios = computable(load_all(configs, _with_keep(settings, keep), plugins, variant))
     selection = select(scenarios, runs, case, estimator, force=force)
     failed = bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
     if not dry_run:
@@ -95,6 +98,10 @@ def sweep(
             asked = [*map(str, configs), "--out", str(out), *of_runs, *changed]
             print(f"to look at it: {shlex.join(['debrisest', 'report', *asked])}", file=sys.stderr)
         exit_if(wrong or failed)
+
+
+def _with_keep(settings: Sequence[str] | None, keep: str | None) -> list[str]:
+    return [*(settings or ()), *([f"keep={keep}"] if keep else [])]
 
 
 def _machine(jobs: int | None, cluster: str | None, quiet: bool) -> "Machine":

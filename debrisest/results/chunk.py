@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from debrisest.arrays import Data
 from debrisest.results import store
 from debrisest.results.address import Address
+from debrisest.results.trajectories import is_trajectory
 from debrisest.vocabulary import VOCABULARY
 
 
@@ -18,6 +19,16 @@ class Chunk(NamedTuple):
     runs: int
     """How many runs of it are read."""
     attributes: dict[str, Any]
+
+    def is_whole(self, index: int) -> bool:
+        """Return whether it has the trajectories of the run of this index in it."""
+        return index < int(self.attributes.get("whole_runs", self.runs))
+
+    def read_run(self, index: int) -> Data:
+        """Return the datasets of the run of this index, without trajectories that are not kept."""
+        data, stage = self.read(first=index, runs=index + 1), self.address.stage
+        whole = self.is_whole(index)
+        return {n: v for n, v in data.items() if whole or not is_trajectory(n, stage, v.ndim)}
 
     def read(
         self, names: Container[str] = VOCABULARY, first: int = 0, runs: int | None = None

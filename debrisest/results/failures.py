@@ -21,9 +21,12 @@ class Failure(NamedTuple):
 
 
 def failures_of(chunks: Iterable[Chunk]) -> list[Failure]:
-    """Return the failed runs of files, upstream first; one not simulated counts only once."""
+    """Return the failed runs of files, upstream first; one not simulated counts only once.
+
+    Only files that say that runs failed are read.
+    """
     found: dict[tuple[str, str, int], Failure] = {}
-    for chunk in chunks:
+    for chunk in (one for one in chunks if one.attributes.get("failed_runs", 1)):
         case, estimator = chunk.address.case, chunk.address.estimator
         data = chunk.read(("run", "failure"))
         for run, why in zip(data["run"].astype(int).tolist(), data["failure"].tolist()):

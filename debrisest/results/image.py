@@ -1,7 +1,8 @@
 """Datasets as an HDF5 file in memory, and back.
 
-They are flat float64 (names are text; images uint8, compressed) with units and dimension scales, so
-that h5py and xarray (``engine="h5netcdf"``) read them without this package.
+They are flat float64 (names are text; images uint8) with units and dimension scales, compressed
+where that saves much, so that h5py and xarray (``engine="h5netcdf"``) read them without this
+package.
 """
 
 from collections.abc import Container, Mapping
@@ -12,6 +13,7 @@ import h5py
 import numpy as np
 
 from debrisest.arrays import Data
+from debrisest.results.packed import create_numbers
 from debrisest.results.told import require_as_told
 from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, has_runs
 
@@ -29,6 +31,11 @@ def image_of(data: Data, attributes: Mapping[str, Any], frames: Mapping[str, str
             file[name].attrs["frame"] = frames[name]
         file.flush()
         return bytes(file.id.get_file_image())
+
+
+def as_stored(data: Data) -> Data:
+    """Return datasets as a file gives them back: texts, float64 or uint8, in one piece."""
+    return {name: _as_stored(value) for name, value in data.items()}
 
 
 def opened(image: bytes) -> Any:
@@ -58,7 +65,7 @@ def data_of(
     data: Data = {}
     for name, dataset in _datasets(file, attributes, names).items():
         value = dataset[first:end] if has_runs(name) else dataset[()]
-        is_text = _is_text(dataset)
+        is_text = value.dtype.kind == "O"
         data[name] = np.array([text.decode() for text in value]) if is_text else value
     return data
 
@@ -87,8 +94,9 @@ def _dataset(file: Any, name: str) -> Any:
         raise ValueError(f"{name} is no dataset of this file")
     if name not in VOCABULARY or (name in COORDINATES and _is_length(dataset)):
         return None
-    if not (_is_text(dataset) or dataset.dtype in _NUMBERS):
-        raise ValueError(f"{name} is of the type {dataset.dtype}")
+    kind = dataset.dtype
+    if not (kind in _NUMBERS or h5py.check_string_dtype(kind) is not None):
+        raise ValueError(f"{name} is of the type {kind}")
     if dataset.attrs.get("units") != VOCABULARY[name].unit:
         raise ValueError(f"{name} is not in {VOCABULARY[name].unit}")
     _lengths(name, dataset.shape)
@@ -108,12 +116,9 @@ def _is_length(scale: Any) -> bool:
     return bytes(scale.attrs.get("NAME", b"")).startswith(_NO_COORDINATE.encode())
 
 
-def _is_text(dataset: Any) -> bool:
-    return h5py.check_string_dtype(dataset.dtype) is not None
-
-
 def _write_data(file: Any, data: Data) -> None:
     scales: dict[str, Any] = {}
+    data = as_stored(data)
     for name in sorted(data, key=lambda name: name not in COORDINATES):
         quantity, value = VOCABULARY[name], data[name]
         dataset = _create(file, name, value)
@@ -129,10 +134,16 @@ def _write_data(file: Any, data: Data) -> None:
             dataset.dims[axis].attach_scale(scales[label])
 
 
+def _as_stored(value: Any) -> Any:
+    if value.dtype.kind in "US":
+        return np.array(value.tolist(), dtype=str)
+    return np.ascontiguousarray(value, value.dtype if value.dtype == np.uint8 else np.float64)
+
+
 def _create(file: Any, name: str, value: Any) -> Any:
     if value.dtype.kind in "US":
         return file.create_dataset(name, data=value.tolist(), dtype=h5py.string_dtype())
     if value.dtype == np.uint8:
         one = (1,) * (value.ndim - 2) + value.shape[-2:]
         return file.create_dataset(name, data=value, chunks=one, compression=1)
-    return file.create_dataset(name, data=value.astype(np.float64))
+    return create_numbers(file, name, value)

@@ -72,8 +72,8 @@ class Results:
     ) -> Data:
         """Return the datasets of a stage, by default of the last, of the runs before ``runs``.
 
-        They are in SI and radians, with axes as in the vocabulary. Raises UserError for what is
-        not there.
+        They are in SI and radians, with axes as in the vocabulary; NaN where trajectories are not
+        kept. Raises UserError for what is not there.
         """
         most = sys.maxsize if runs is None else runs
         wanted = [
@@ -115,13 +115,26 @@ class Results:
         return min(self.good_runs(case, estimator), default=None)
 
     def one_run(self, case: str, estimator: str, run: int) -> Data:
-        """Return a run's datasets of all stages without their run axis; of one name, the latest."""
+        """Return a run's datasets of all stages without their run axis; of one name, the latest.
+
+        Trajectories that are not kept are left out.
+        """
         data: Data = {}
         for chunk in self._of_run(case, estimator):
             index = run - chunk.address.first_run
             if 0 <= index < chunk.runs:
-                data |= chunk.read(first=index, runs=index + 1)
+                data |= chunk.read_run(index)
         return {name: value[0] if has_runs(name) else value for name, value in data.items()}
+
+    def is_whole(self, case: str, estimator: str, run: int) -> bool:
+        """Return whether the trajectories of a run are kept in all files that there are of it."""
+        places = ((one, run - one.address.first_run) for one in self._of_run(case, estimator))
+        return all(one.is_whole(at) for one, at in places if 0 <= at < one.runs)
+
+    def not_kept(self, case: str, estimator: str, run: int) -> str:
+        """Return what to do for the trajectories of a run, which are not kept."""
+        of = f"{self.folder.name} {case}: {estimator}, run {run}"
+        return f"the trajectories of {of} are not kept; sweep with --keep all or --keep {run + 1}"
 
     def _of_run(self, case: str | None, estimator: str | None) -> Iterator[Chunk]:
         """Yield the files that a run of an estimator comes from; None stands for all of them."""

@@ -19,6 +19,8 @@ class Wanted:
     address: Address
     path: Path
     runs: int
+    whole_runs: int = 0
+    """How many of them, the first ones, have their trajectories kept, if its stage has any."""
     inputs: dict[str, Any]
     key: str
     reason: str = ""
@@ -82,6 +84,8 @@ def _outdated(wanted: Wanted, attributes: dict[str, Any]) -> str:
         return difference(json.loads(attributes["inputs"]), wanted.inputs)
     if attributes["runs"] < wanted.runs:
         return f"holds {attributes['runs']} runs, {wanted.runs} are wanted"
+    if (whole := attributes.get("whole_runs", wanted.runs)) < wanted.whole_runs:
+        return f"keeps the trajectories of {whole} runs, those of {wanted.whole_runs} are wanted"
     return ""
 
 

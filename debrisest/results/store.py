@@ -8,7 +8,7 @@ from collections.abc import Container, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from enum import Enum
-from functools import cache
+from functools import cache, lru_cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
@@ -29,7 +29,7 @@ from debrisest.results.told import forms, require_told
 from debrisest.revision import commit
 from debrisest.vocabulary import VOCABULARY
 
-SCHEMA_VERSION = 4
+SCHEMA_VERSION = 5
 _BROKEN = (ValueError, OSError, RuntimeError, KeyError, TypeError, AttributeError)
 """What reading an HDF5 file raises that is not as it should be."""
 
@@ -114,6 +114,15 @@ def frames(path: Path) -> dict[str, str]:
         return frames_of(file)
 
 
+def require(path: Path, expected: Mapping[str, Any]) -> None:
+    """Raise UserError unless a file is there, as its label has it, with attributes as expected."""
+    condition, attributes = inspect(path, Depth.LABEL)
+    if condition is Condition.WHOLE and not fits(attributes, expected):
+        condition = Condition.ANOTHER
+    if condition is not Condition.WHOLE:
+        raise UserError(_told(path, condition))
+
+
 @contextmanager
 def _whole(path: Path, expected: Mapping[str, Any]) -> Iterator[tuple[Any, dict[str, Any]]]:
     """Yield the verified HDF5 file of a checkpoint and its attributes, or raise UserError."""
@@ -142,6 +151,22 @@ def _look(path: Path, numbers: bool = True) -> tuple[Checkpoint, bytes]:
         return Checkpoint(Condition.MISSING), b""
     if not path.is_file():
         return Checkpoint(Condition.FOREIGN), b""
+    return _read(path) if numbers else (_labelled(path, _state(path)), b"")
+
+
+def _state(path: Path) -> tuple[int, ...]:
+    """Return what changes where a file is written to or replaced."""
+    found = path.stat()
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
+
+
+@lru_cache(maxsize=10_000)
+def _labelled(path: Path, _: tuple[int, ...]) -> Checkpoint:
+    """Return what the label of a file tells, which a command asks for several times."""
+    return _read(path, numbers=False)[0]
+
+
+def _read(path: Path, numbers: bool = True) -> tuple[Checkpoint, bytes]:
     with path.open("rb") as file:
         label = read_label(file)
         if label is None:

@@ -12,6 +12,8 @@ from debrisest.vocabulary import VOCABULARY
 _TYPES: dict[str, type] = {
     "first_run": int,
     "runs": int,
+    "whole_runs": int,
+    "failed_runs": int,
     "seed": int,
     **dict.fromkeys(("case", "estimator", "stage", "stage_key", "scenario", "created"), str),
     **dict.fromkeys(("software", "commit", "imported_from"), str),

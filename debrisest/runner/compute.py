@@ -1,4 +1,7 @@
-"""Compute chunks of a stage together: read upstream, call once for all runs, a file for each."""
+"""Compute chunks of a stage together: read upstream, call once for all runs, a file for each.
+
+A step that another goes with is followed by it, which sees all trajectories before they are left.
+"""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -9,6 +12,8 @@ import numpy as np
 
 from debrisest.arrays import Data
 from debrisest.results import store
+from debrisest.results.image import as_stored
+from debrisest.results.trajectories import thinned
 from debrisest.runner.plan import Step
 from debrisest.runner.stages.isolate import isolate
 from debrisest.runner.stages.pipeline import STAGES
@@ -19,15 +24,33 @@ from debrisest.vocabulary import VOCABULARY, has_runs
 def compute(steps: Sequence[Step]) -> None:
     """Compute chunks of the same stage, case and estimator, and write their files."""
     step = steps[0]
-    stage, estimator = STAGES[step.address.stage], step.address.estimator
+    if step.computed_before:
+        return
     reads = [_read(one) for one in steps]
     batches = groupby(zip(steps, reads), key=lambda pair: _shapes(pair[1]))
     for chunks, inputs in (zip(*batch) for _, batch in batches):
-        read = _together(inputs)
-        result = isolate(lambda data: _declared(stage.run(step.case, estimator, data)), read)
-        times = read["time_s"] if step.upstream else step.case.clock.times
-        for chunk, data in zip(chunks, _apart({"time_s": times, **result}, chunks)):
-            store.write(chunk.path, data, _attributes(chunk), step.case.scenario.frames)
+        result = _run(step, _together(inputs))
+        for chunk, read, data in zip(chunks, inputs, _apart(result, chunks)):
+            _write(chunk, data)
+            if chunk.then is not None:
+                store.require(chunk.path, chunk.attributes | {"runs": chunk.runs})
+                _write(chunk.then, _run(chunk.then, read | _seen_later(data, chunk)))
+
+
+def _run(step: Step, read: Data) -> Data:
+    """Return what a step makes of what it reads, as its file would give it back."""
+    stage, estimator = STAGES[step.address.stage], step.address.estimator
+    result = isolate(lambda data: _declared(stage.run(step.case, estimator, data)), read)
+    times = read["time_s"] if step.upstream else step.case.clock.times
+    return as_stored({"time_s": times, **result})
+
+
+def _write(step: Step, data: Data) -> None:
+    scenario = step.case.scenario
+    whole = max(0, scenario.whole_runs - step.address.first_run)
+    kept, whole = thinned(data, step.address.stage, whole)
+    told = {"whole_runs": whole, "failed_runs": int(np.count_nonzero(data["failure"] != ""))}
+    store.write(step.path, kept, _attributes(step) | told, scenario.frames)
 
 
 def _declared(data: Data) -> Data:
@@ -45,10 +68,14 @@ def _read(step: Step) -> Data:
     for upstream in step.upstream:
         expected = upstream.attributes | {"runs": step.runs}
         found = store.read(upstream.path, step.runs, expected=expected)
-        if "status" in found:
-            found[f"{upstream.address.stage}_status"] = found.pop("status")
-        data |= found
+        data |= _seen_later(found, upstream)
     return data
+
+
+def _seen_later(data: Data, step: Step) -> Data:
+    """Return what a stage gave as later stages see it: its status under a name of its own."""
+    own = f"{step.address.stage}_status"
+    return {own if name == "status" else name: value for name, value in data.items()}
 
 
 def _shapes(data: Data) -> dict[str, tuple[int, ...]]:

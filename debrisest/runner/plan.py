@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,10 @@ class Step(Wanted):
 
     case: Case
     upstream: tuple["Step", ...]
+    then: "Step | None" = None
+    """The step that is computed with this one: it needs trajectories that are not all kept."""
+    computed_before: bool = False
+    """Whether it is such a step, of which nothing is left to do when its turn comes."""
 
     @property
     def kin(self) -> tuple[str, ...]:
@@ -58,8 +63,17 @@ class Selection:
         return case_fits and estimator in self.estimators
 
 
-def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step]:
-    """Return every step that the selection needs, upstream first, with the reasons to run."""
+def plan(
+    scenario: LoadedScenario,
+    out: Path,
+    selection: Selection,
+    verified: Container[str] = (),
+) -> list[Step]:
+    """Return every step that the selection needs, upstream first, with the reasons to run.
+
+    Labels and lengths of files are looked at, and all bytes of the stages that are ``verified``:
+    whoever reads data verifies them then.
+    """
     cases = [name for name in scenario.cases if name in (selection.cases or scenario.cases)]
     steps: list[Step] = []
     for name in cases:
@@ -68,7 +82,7 @@ def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step
         estimators = [one for one in case.estimators if one in wanted_of]
         wanted = case.runs(selection.runs)
         chunks = [
-            _Chunk(case, out, first, min(RUNS_PER_FILE, wanted - first), selection)
+            _Chunk(case, out, first, min(RUNS_PER_FILE, wanted - first), selection, verified)
             for first in range(0, wanted, RUNS_PER_FILE)
         ]
         by_stage = zip(*(chunk.steps(estimators) for chunk in chunks), strict=True)
@@ -102,15 +116,18 @@ class _Chunk:
     first: int
     runs: int
     selection: Selection
+    verified: Container[str]
     held: list[int] = field(default_factory=list)
     """Runs of the files of this very scenario that have to be computed anew all the same."""
+    whole: dict[Path, int] = field(default_factory=dict)
+    """How many runs of each file that is there have their trajectories."""
 
     def steps(self, estimators: Sequence[str]) -> list[Step]:
         """Return the steps; what is computed anew keeps as many runs as its file held."""
         simulate = self._step("simulate", "", ())
         steps = [simulate, *self._estimator_steps(simulate, estimators)]
         most = max(self.runs, *self.held)
-        return [replace(step, runs=most) if step.reason else step for step in steps]
+        return _paired([replace(step, runs=most) if step.reason else step for step in steps])
 
     def _estimator_steps(self, simulate: Step, estimators: Sequence[str]) -> Iterator[Step]:
         for estimator in estimators:
@@ -120,7 +137,18 @@ class _Chunk:
                 if not _within(stage, self.selection.last_stage):
                     break
                 done = (*done, self._step(stage, estimator, done))
+                if stage == "assess" and done[-1].reason:
+                    done = self._with_trajectories(done)
             yield from done[1:]
+
+    def _with_trajectories(self, done: tuple[Step, ...]) -> tuple[Step, ...]:
+        """Return the steps, with the filter due if its file lacks what the last one reads."""
+        *before, filtered, assess = done
+        known = filtered.reason or filtered.address.stage != "filter"
+        if known or self.whole[filtered.path] >= filtered.runs:
+            return done
+        filtered = replace(filtered, reason=f"{assess.address.stage} needs its trajectories")
+        return (*before, filtered, replace(assess, upstream=(*before, filtered)))
 
     def _step(self, stage: str, estimator: str, upstream: tuple[Step, ...]) -> Step:
         inputs = STAGES[stage].inputs(self.case, estimator)
@@ -131,12 +159,15 @@ class _Chunk:
             address=address,
             path=address.path(self.out),
             runs=self.runs,
+            whole_runs=min(self.runs, max(0, self.case.scenario.whole_runs - self.first)),
             inputs=inputs,
             key=_key(inputs, [step.key for step in upstream]),
         )
-        found = store.inspect(step.path, store.Depth.BYTES)
+        depth = store.Depth.BYTES if stage in self.verified else store.Depth.LABEL
+        found = store.inspect(step.path, depth)
         reason, notice = out_of_date(step, found, self._asked_for(upstream))
         same = store.fits(found.attributes, step.attributes)
+        self.whole[step.path] = found.attributes.get("whole_runs", self.runs)
         self.held.append(found.attributes.get("runs", 0) if same and reason else 0)
         return replace(step, reason=reason, notice=notice)
 
@@ -144,6 +175,17 @@ class _Chunk:
         """Return why a step runs whatever its file holds."""
         before = [f"{step.address.stage} runs before it" for step in upstream if step.reason]
         return "asked for by --force" if self.selection.force else "".join(before[:1])
+
+
+def _paired(steps: list[Step]) -> list[Step]:
+    """Return the steps, each filter with what assesses it where both are due."""
+    pairs = list(steps)
+    for index, (filtered, assess) in enumerate(pairwise(steps)):
+        both = (filtered.address.stage, assess.address.stage) == ("filter", "assess")
+        if both and filtered.reason and assess.reason:
+            pairs[index + 1] = replace(assess, computed_before=True)
+            pairs[index] = replace(filtered, then=pairs[index + 1])
+    return pairs
 
 
 def _within(stage: str, last: str) -> bool:

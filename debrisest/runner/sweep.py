@@ -9,6 +9,7 @@ from debrisest.errors import UserError
 from debrisest.files import remove_leftovers
 from debrisest.interrupts import raised
 from debrisest.locked import locked
+from debrisest.results.address import STAGES
 from debrisest.results.open import find_results
 from debrisest.runner.execute import execute
 from debrisest.runner.executors import executor, require_guarded
@@ -41,7 +42,7 @@ def bring_up_to_date(
         for scenario in scenarios:
             locks.enter_context(locked(out / scenario.name))
             remove_leftovers(out / scenario.name)
-        steps = [step for scenario in scenarios for step in plan(scenario, out, selection)]
+        steps = [step for one in scenarios for step in plan(one, out, selection, STAGES)]
         errors = _run_due(steps, machine)
     for scenario in scenarios:
         results = find_results(out / scenario.name)

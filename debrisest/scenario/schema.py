@@ -138,6 +138,9 @@ class Scenario(Keys):
     source: Line = ""
     seed: Annotated[int, Field(ge=0, lt=2**63)]
     runs: Annotated[int, Field(ge=1, le=MOST_RUNS)]
+    keep: Annotated[int, Field(ge=1)] | Literal["all"] = Field(
+        1, description="runs whose trajectories are kept, the first ones, or `all`"
+    )
     duration_s: Positive
     step_s: Positive | None = None
     measured: SourcePart | None = None
@@ -154,6 +157,11 @@ class Scenario(Keys):
     def clock(self) -> Clock:
         """Return the epochs of a simulation."""
         return Clock.regular(self.duration_s, self.step_s or self.duration_s)
+
+    @property
+    def whole_runs(self) -> int:
+        """Return how many runs keep their trajectories."""
+        return MOST_RUNS if self.keep == "all" else self.keep
 
     @property
     def simulation(self) -> dict[str, SimulationPart]:

@@ -36,7 +36,8 @@ class Estimate(NamedTuple):
 def estimates_at(results: Results, run: int = 0, time: float = np.inf) -> Iterator[Estimate]:
     """Yield what all estimators know of a run at the last epoch that is not after ``time``, s.
 
-    An estimator without this run is left out. Raises UserError where there is no such epoch.
+    An estimator without this run is left out. Raises UserError where there is no such epoch, or
+    the run's trajectories are not kept.
     """
     for case, estimator in _filtered(results):
         data = results.load(case, estimator, "filter", _names(), run + 1)
@@ -47,6 +48,8 @@ def estimates_at(results: Results, run: int = 0, time: float = np.inf) -> Iterat
         epoch = int(np.searchsorted(times, time, side="right")) - 1
         if epoch < 0:
             raise UserError(f"--at {time:g}: the first epoch is at {times[0]:g} s")
+        if epoch < len(times) - 1 and not results.is_whole(case, estimator, run):
+            raise UserError(f"--at {time:g}: {results.not_kept(case, estimator, run)}")
         failure = str(data["failure"][index])
         rows = _of_run(data, index, _features(results, case), slice(epoch, epoch + 1))
         status = f"failed: {failure}" if failure else str(data["status"][index])
@@ -58,7 +61,8 @@ def export(results: Results, path: Path) -> int:
     """Write all epochs of all runs as CSV with `COLUMNS`; return the number of rows.
 
     Units are those of the tables. What does not change with time has no ``time_s``; what is not
-    known has no ``value``; runs that failed are left out.
+    known has no ``value``; runs that failed are left out. Of runs whose trajectories are not kept
+    there is the last epoch.
     """
     written = 0
     with replacing(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
@@ -78,7 +82,8 @@ def _all_rows(results: Results) -> Iterator[pd.DataFrame]:
                 continue
             data = chunk.read(_names())
             for index in np.flatnonzero(data["failure"] == ""):
-                rows = _of_run(data, int(index), features)
+                epochs = slice(0 if chunk.is_whole(int(index)) else -1, None)
+                rows = _of_run(data, int(index), features, epochs)
                 rows.insert(0, "run", int(data["run"][index]))
                 rows.insert(0, "estimator", estimator)
                 rows.insert(0, "case", case)

@@ -17,6 +17,7 @@ from debrisest.show.plots.files import USUAL, write
 from debrisest.show.plots.gather import (
     Source,
     all_runs,
+    chosen_run,
     of_estimators,
     simulations,
     single_runs,
@@ -57,7 +58,8 @@ def draw_all(
             yield write_tumble(source, folder)
     if not drawn:
         raise UserError(
-            f"{scenario.name}: no results that are up to date to draw; "
+            without_trajectories(scenario, out, wanted, asked)
+            or f"{scenario.name}: no results that are up to date to draw; "
             f"run: debrisest sweep {scenario.path}"
         )
 
@@ -68,6 +70,22 @@ def draw(name: str, source: Source) -> Figure:
     if kind.beside is not None:
         return kind.beside(source.data, source.context, source.beside)
     return kind.draw(source.data, source.context)
+
+
+def without_trajectories(
+    scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted], asked: Asked = ALL
+) -> list[str]:
+    """Return a sentence for each case and estimator of which figures of one run lack their data."""
+    if not any(FIGURES[name].of_one_run for name in asked.figures or FIGURES if name != FILM):
+        return []
+    results = up_to_date(find_results(out / scenario.name), wanted)
+    told = []
+    for case in results.cases:
+        for estimator in results.estimators(case):
+            run = chosen_run(results, case, estimator, asked.run)
+            if run is not None and not results.is_whole(case, estimator, run):
+                told.append(results.not_kept(case, estimator, run))
+    return told
 
 
 def check_asked(asked: Asked) -> None:

@@ -41,7 +41,7 @@ def single_runs(
     """Return a run of every case and estimator that has it: by default the first that did well."""
     for case in results.cases:
         for estimator in results.estimators(case):
-            run = _run(results, case, estimator, run_asked)
+            run = chosen_run(results, case, estimator, run_asked)
             if run is not None:
                 context = f"{scenario.name}, case {case}, estimator {estimator}, run {run}"
                 result = errors.get((case, estimator))
@@ -56,17 +56,22 @@ def simulations(
 ) -> Iterator[Source]:
     """Return what was simulated of a run, of every case that has it."""
     for case in results.cases:
-        run = _run(results, case, "", run_asked)
+        run = chosen_run(results, case, "", run_asked)
         if run is not None:
             context = f"{scenario.name}, case {case}, run {run}"
             yield Source((case, *_told(run_asked)), context, results.one_run(case, "", run))
 
 
-def _run(results: Results, case: str, estimator: str, asked: int | None) -> int | None:
-    """Return the run that is asked for, if there is a result of it; by default the first one."""
-    if asked is None:
-        return results.first_good_run(case, estimator)
-    return asked if asked in results.good_runs(case, estimator) else None
+def chosen_run(results: Results, case: str, estimator: str, asked: int | None = None) -> int | None:
+    """Return the run that is asked for, if there is a result of it; by default the first one.
+
+    By default one whose trajectories are kept, if there is one.
+    """
+    good = sorted(results.good_runs(case, estimator))
+    if asked is not None:
+        return asked if asked in good else None
+    whole = (run for run in good if results.is_whole(case, estimator, run))
+    return next(whole, min(good, default=None))
 
 
 def _told(run_asked: int | None) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
 """Tables laid out as in the paper: a row per case, the sources side by side."""
 
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pandas as pd
 
@@ -71,9 +71,10 @@ def _of_quantity(table: Table, cells: pd.DataFrame, detail: bool) -> Sheet:
         [
             str(case),
             _SHOWN.get(source, source),
-            *(_text(part[_in_column(part, each)], source, name, detail) for each in columns),
+            *(_text(rows_of, source, name, detail) for rows_of in by_column),
         ]
         for case, part in cells.groupby("case", sort=False)
+        for by_column in [[_rows(part[_in_column(part, each)]) for each in columns]]
         for source in _sources(part)
     ]
     title = ", ".join([f"{table.title}: {_heads(cells)[0]}", *common])
@@ -91,14 +92,16 @@ def _grid(cells: pd.DataFrame, detail: bool) -> tuple[list[str], list[list[str]]
     if len(names) == 1 and not cells["verdict"].isin(CONSISTENCY).any():
         sources = _sources(cells)
         rows = [
-            [str(case), *(_text(part, source, names[0], detail) for source in sources)]
+            [str(case), *(_text(rows_of, source, names[0], detail) for source in sources)]
             for case, part in by_case
+            for rows_of in [_rows(part)]
         ]
         return ["case", *(_SHOWN.get(source, source) for source in sources)], rows
     rows = [
         [str(case), _SHOWN.get(source, source)]
-        + [_text(part, source, name, detail) for name in names]
+        + [_text(rows_of, source, name, detail) for name in names]
         for case, part in by_case
+        for rows_of in [_rows(part)]
         for source in _sources(part)
     ]
     return ["case", "source", *_heads(cells)], rows
@@ -115,21 +118,26 @@ def _sources(cells: pd.DataFrame) -> list[str]:
     return [*paper, *dict.fromkeys(cells["estimator"])]
 
 
-def _text(part: pd.DataFrame, source: str, quantity: str, detail: bool) -> str:
+def _rows(part: pd.DataFrame) -> list[Any]:
+    """Return cells as records: looked through one by one they take a tenth of the time."""
+    return list(part.itertuples())
+
+
+def _text(rows: list[Any], source: str, quantity: str, detail: bool) -> str:
     """Return a figure of three digits, its verdict's sign, and before it the runs left out."""
-    part = part[part["quantity"] == quantity]
+    mine = [row for row in rows if row.quantity == quantity]
     if source == PAPER:
-        published = part[part["published"].notna()]
-        return "".join(f"{row.published:.3g}{row.mark}" for row in published[:1].itertuples())
-    own = part[part["estimator"] == source]
-    if own.empty:
+        published = [row for row in mine if pd.notna(row.published)]
+        return "".join(f"{row.published:.3g}{row.mark}" for row in published[:1])
+    own = next((row for row in mine if row.estimator == source), None)
+    if own is None:
         return ""
-    measured, verdict = own["measured"].iloc[0], own["verdict"].iloc[0]
-    figure = f"{measured:.3g}{VOCABULARY[quantity].after_figure}" if pd.notna(measured) else "-"
-    lost = int(own["failed"].iloc[0] + own["diverged"].iloc[0])
+    after = VOCABULARY[quantity].after_figure
+    figure = f"{own.measured:.3g}{after}" if pd.notna(own.measured) else "-"
+    lost = int(own.failed + own.diverged)
     note = f"({lost}) " if lost else ""
-    more = _details(*own[["measured", "ci_low", "ci_high", "bound"]].iloc[0]) if detail else ""
-    return f"{note}{figure}{more} {SYMBOLS[Verdict(verdict)]}".rstrip()
+    more = _details(own.measured, own.ci_low, own.ci_high, own.bound) if detail else ""
+    return f"{note}{figure}{more} {SYMBOLS[Verdict(own.verdict)]}".rstrip()
 
 
 def _details(measured: float, low: float, high: float, bound: float) -> str:

@@ -21,17 +21,21 @@ def tabulate(
     scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]
 ) -> tuple[pd.DataFrame, list[Wanted]]:
     """Return the cells of all results that are up to date, and the files that are not."""
-    simulated = {
-        name
-        for table in scenario.common.tables.layout
-        if table.stage == "simulate"
-        for name in table.quantities
-    }
-    shown = {"assess", "simulate"} if simulated else {"assess"}
+    simulated, shown = _simulated(scenario), read_by_tables(scenario)
     files = [one for one in wanted if one.address.stage in shown]
     results = up_to_date(find_results(out / scenario.name), files, complete=True)
     stale = [one for one in files if one.reason]
     return cells(scenario, assessed(results, simulated, _quantities(scenario))), stale
+
+
+def read_by_tables(scenario: LoadedScenario) -> set[str]:
+    """Return the stages whose files are read."""
+    return {"assess", "simulate"} if _simulated(scenario) else {"assess"}
+
+
+def _simulated(scenario: LoadedScenario) -> set[str]:
+    tables = (table for table in scenario.common.tables.layout if table.stage == "simulate")
+    return {name for table in tables for name in table.quantities}
 
 
 def _quantities(scenario: LoadedScenario) -> set[str]:

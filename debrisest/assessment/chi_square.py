@@ -1,0 +1,18 @@
+"""The chi-square distribution, without the second that importing scipy.stats takes."""
+
+from typing import Any
+
+import numpy as np
+from scipy.special import chdtri, gammaincinv
+
+from debrisest.arrays import Array
+
+
+def quantile(probability: Any, dof: Any) -> Array:
+    """Value that is above a chi-square of ``dof`` degrees of freedom with a probability."""
+    return np.asarray(2.0 * gammaincinv(0.5 * np.asarray(dof), probability))
+
+
+def upper_quantile(probability: Any, dof: Any) -> Array:
+    """Value that is below it with a probability."""
+    return np.asarray(chdtri(dof, probability))
