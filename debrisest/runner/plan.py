@@ -59,7 +59,10 @@ class Selection:
 
 
 def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step]:
-    """Return every step that the selection needs, upstream first, with the reasons to run."""
+    """Return every step that the selection needs, upstream first, with the reasons to run.
+
+    A simulation that points of a grid share is one step.
+    """
     cases = [name for name in scenario.cases if name in (selection.cases or scenario.cases)]
     steps: list[Step] = []
     for name in cases:
@@ -73,7 +76,15 @@ def plan(scenario: LoadedScenario, out: Path, selection: Selection) -> list[Step
         ]
         by_stage = zip(*(chunk.steps(estimators) for chunk in chunks), strict=True)
         steps += [step for stage in by_stage for step in stage]
-    return steps
+    return _once(steps)
+
+
+def _once(steps: Sequence[Step]) -> list[Step]:
+    """Return one step for each file, with the most runs that any case wants of it."""
+    found: dict[Path, Step] = {}
+    for step in steps:
+        found[step.path] = max(found.get(step.path, step), step, key=lambda one: one.runs)
+    return list(found.values())
 
 
 def check_selection(scenarios: Sequence[LoadedScenario], selection: Selection) -> None:
@@ -123,10 +134,11 @@ class _Chunk:
             yield from done[1:]
 
     def _step(self, stage: str, estimator: str, upstream: tuple[Step, ...]) -> Step:
-        inputs = STAGES[stage].inputs(self.case, estimator)
-        address = Address(self.case.scenario_name, self.case.name, stage, estimator, self.first)
+        case = self.case if upstream else self.case.simulation
+        inputs = STAGES[stage].inputs(case, estimator)
+        address = Address(case.scenario_name, case.name, stage, estimator, self.first)
         step = Step(
-            case=self.case,
+            case=case,
             upstream=upstream,
             address=address,
             path=address.path(self.out),
