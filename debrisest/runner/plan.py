@@ -49,6 +49,8 @@ class Selection:
     estimators: Sequence[str] | None = None
     last_stage: str = "assess"
     force: bool = False
+    again: Container[Address] = ()
+    """Files that are computed anew although they may be up to date."""
 
     def asks_for(self, case: str, estimator: str, means: Container[str]) -> bool:
         """Return whether a cell belongs to it; means belong to a selection of all cases."""
@@ -147,15 +149,19 @@ class _Chunk:
             key=_key(inputs, [step.key for step in upstream]),
         )
         found = store.inspect(step.path, store.Depth.BYTES)
-        reason, notice = out_of_date(step, found, self._asked_for(upstream))
+        reason, notice = out_of_date(step, found, self._asked_for(address, upstream))
         same = store.fits(found.attributes, step.attributes)
         self.held.append(found.attributes.get("runs", 0) if same and reason else 0)
         return replace(step, reason=reason, notice=notice)
 
-    def _asked_for(self, upstream: tuple[Step, ...]) -> str:
+    def _asked_for(self, address: Address, upstream: tuple[Step, ...]) -> str:
         """Return why a step runs whatever its file holds."""
+        if self.selection.force:
+            return "asked for by --force"
+        if address in self.selection.again:
+            return "a run of it failed or diverged"
         before = [f"{step.address.stage} runs before it" for step in upstream if step.reason]
-        return "asked for by --force" if self.selection.force else "".join(before[:1])
+        return "".join(before[:1])
 
 
 def _within(stage: str, last: str) -> bool:
