@@ -44,6 +44,9 @@ Plugins = Annotated[
 ]
 DryRun = Annotated[bool, Option("--dry-run", help="Tell what would run, and why.")]
 Force = Annotated[bool, Option("--force", help="Run even what is up to date.")]
+RerunFailed = Annotated[
+    bool, Option("--rerun-failed", help="Run again what has runs that failed or diverged.")
+]
 Cluster = Annotated[
     str | None, Option("--executor", help="Run on a cluster: dask:tcp://HOST:PORT.")
 ]

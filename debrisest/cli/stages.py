@@ -24,6 +24,7 @@ from debrisest.cli.options import (
     Out,
     Plugins,
     Quiet,
+    RerunFailed,
     Runs,
     Settings,
     Variant,
@@ -52,11 +53,13 @@ def _command(last_stage: str, help: str) -> Callable[..., None]:
         plugins: Plugins = None,
         dry_run: DryRun = False,
         force: Force = False,
+        rerun_failed: RerunFailed = False,
         cluster: Cluster = None,
         quiet: Quiet = False,
     ) -> None:
         scenarios = computable(load_all(configs, _with_keep(settings, keep), plugins, variant))
         selection = select(scenarios, runs, case, estimator, last_stage, force)
+        selection = _with_lost(selection, scenarios, out) if rerun_failed else selection
         exit_if(bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
 
     command.__doc__ = help
@@ -81,6 +84,7 @@ def sweep(
     plugins: Plugins = None,
     dry_run: DryRun = False,
     force: Force = False,
+    rerun_failed: RerunFailed = False,
     cluster: Cluster = None,
     quiet: Quiet = False,
     check: Check = False,
@@ -88,6 +92,7 @@ def sweep(
     """Do everything for all cases, then write and print the tables."""
     scenarios = computable(load_all(configs, _with_keep(settings, keep), plugins, variant))
     selection = select(scenarios, runs, case, estimator, force=force)
+    selection = _with_lost(selection, scenarios, out) if rerun_failed else selection
     failed = bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
     if not dry_run:
         wrong = show_tables(scenarios, out, selection, Format.RICH, check)
@@ -102,6 +107,19 @@ def sweep(
 
 def _with_keep(settings: Sequence[str] | None, keep: str | None) -> list[str]:
     return [*(settings or ()), *([f"keep={keep}"] if keep else [])]
+
+
+def _with_lost(
+    selection: "Selection", scenarios: Sequence["LoadedScenario"], out: Path
+) -> "Selection":
+    """Return a selection that also runs again what has runs that failed or diverged."""
+    from dataclasses import replace
+
+    from debrisest.results.lost import lost
+    from debrisest.results.open import find_results
+
+    each = [lost(find_results(out / one.name), one.common.tables.diverged) for one in scenarios]
+    return replace(selection, again=set().union(*each))
 
 
 def _machine(jobs: int | None, cluster: str | None, quiet: bool) -> "Machine":

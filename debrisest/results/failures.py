@@ -28,8 +28,9 @@ def failures_of(chunks: Iterable[Chunk]) -> list[Failure]:
     found: dict[tuple[str, str, int], Failure] = {}
     for chunk in (one for one in chunks if one.attributes.get("failed_runs", 1)):
         case, estimator = chunk.address.case, chunk.address.estimator
+        simulation = chunk.attributes.get("simulation", case)
         data = chunk.read(("run", "failure"))
         for run, why in zip(data["run"].astype(int).tolist(), data["failure"].tolist()):
-            if why and (case, "", run) not in found:
+            if why and (simulation, "", run) not in found:
                 found.setdefault((case, estimator, run), Failure(chunk.address, run, why))
     return list(found.values())

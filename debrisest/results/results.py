@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 class Results:
     """The whole files of results of a scenario.
 
+    Points of a grid that are one truth have one simulation, whose data each of them shows.
     The estimator is empty where the simulation is meant, which all estimators of a case share.
     """
 
@@ -39,8 +40,17 @@ class Results:
 
     @property
     def cases(self) -> list[str]:
-        """Return the names of the cases."""
-        return list(dict.fromkeys(chunk.address.case for chunk in self.chunks))
+        """Return the names of the cases; a simulation that these share is none by itself."""
+        estimated = {one.address.case for one in self.chunks if one.address.estimator}
+        shared = {self.simulation(case) for case in estimated} - estimated
+        every = dict.fromkeys(chunk.address.case for chunk in self.chunks)
+        return [case for case in every if case not in shared]
+
+    def simulation(self, case: str) -> str:
+        """Return the case in whose name the simulation of a case is kept: by default its own."""
+        own = (one for one in self.chunks if one.address.case == case and one.address.estimator)
+        told = [str(one.attributes.get("simulation", case)) for one in own]
+        return told[-1] if told else case
 
     def estimators(self, case: str) -> list[str]:
         """Return the names of the estimators of a case."""
@@ -138,9 +148,11 @@ class Results:
 
     def _of_run(self, case: str | None, estimator: str | None) -> Iterator[Chunk]:
         """Yield the files that a run of an estimator comes from; None stands for all of them."""
+        simulation = None if case is None else self.simulation(case)
         for chunk in self.chunks:
             of = chunk.address
-            if case in (None, of.case) and (estimator is None or of.estimator in ("", estimator)):
+            wanted = case if of.estimator else simulation
+            if wanted in (None, of.case) and (estimator is None or of.estimator in ("", estimator)):
                 yield chunk
 
     def _chosen(self, case: str, estimator: str, stage: str) -> list[Chunk]:
@@ -153,7 +165,7 @@ class Results:
         return self._of_stage(case, estimator, wanted)
 
     def _of_stage(self, case: str, estimator: str, stage: str) -> list[Chunk]:
-        wanted = (case, stage, estimator)
+        wanted = (case if estimator else self.simulation(case), stage, estimator)
         return [chunk for chunk in self.chunks if chunk.address[1:4] == wanted]
 
     def _check(self, what: str, name: str, known: list[str]) -> None:

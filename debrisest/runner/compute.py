@@ -102,7 +102,9 @@ def _apart(data: Data, chunks: Sequence[Step]) -> Iterator[Data]:
 
 
 def _attributes(step: Step) -> dict[str, Any]:
+    simulation = step.upstream[0] if step.upstream else step
     return step.attributes | {
+        "simulation": simulation.address.case,
         "runs": step.runs,
         "inputs": json.dumps(step.inputs),
         "scenario": resolved(step.case),

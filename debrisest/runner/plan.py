@@ -54,6 +54,8 @@ class Selection:
     estimators: Sequence[str] | None = None
     last_stage: str = "assess"
     force: bool = False
+    again: Container[Address] = ()
+    """Files that are computed anew although they may be up to date."""
 
     def asks_for(self, case: str, estimator: str, means: Container[str]) -> bool:
         """Return whether a cell belongs to it; means belong to a selection of all cases."""
@@ -71,6 +73,7 @@ def plan(
 ) -> list[Step]:
     """Return every step that the selection needs, upstream first, with the reasons to run.
 
+    A simulation that points of a grid share is one step.
     Labels and lengths of files are looked at, and all bytes of the stages that are ``verified``:
     whoever reads data verifies them then.
     """
@@ -87,7 +90,15 @@ def plan(
         ]
         by_stage = zip(*(chunk.steps(estimators) for chunk in chunks), strict=True)
         steps += [step for stage in by_stage for step in stage]
-    return steps
+    return _once(steps)
+
+
+def _once(steps: Sequence[Step]) -> list[Step]:
+    """Return one step for each file, with the most runs that any case wants of it."""
+    found: dict[Path, Step] = {}
+    for step in steps:
+        found[step.path] = max(found.get(step.path, step), step, key=lambda one: one.runs)
+    return list(found.values())
 
 
 def check_selection(scenarios: Sequence[LoadedScenario], selection: Selection) -> None:
@@ -151,10 +162,11 @@ class _Chunk:
         return (*before, filtered, replace(assess, upstream=(*before, filtered)))
 
     def _step(self, stage: str, estimator: str, upstream: tuple[Step, ...]) -> Step:
-        inputs = STAGES[stage].inputs(self.case, estimator)
-        address = Address(self.case.scenario_name, self.case.name, stage, estimator, self.first)
+        case = self.case if upstream else self.case.simulation
+        inputs = STAGES[stage].inputs(case, estimator)
+        address = Address(case.scenario_name, case.name, stage, estimator, self.first)
         step = Step(
-            case=self.case,
+            case=case,
             upstream=upstream,
             address=address,
             path=address.path(self.out),
@@ -165,16 +177,20 @@ class _Chunk:
         )
         depth = store.Depth.BYTES if stage in self.verified else store.Depth.LABEL
         found = store.inspect(step.path, depth)
-        reason, notice = out_of_date(step, found, self._asked_for(upstream))
+        reason, notice = out_of_date(step, found, self._asked_for(address, upstream))
         same = store.fits(found.attributes, step.attributes)
         self.whole[step.path] = found.attributes.get("whole_runs", self.runs)
         self.held.append(found.attributes.get("runs", 0) if same and reason else 0)
         return replace(step, reason=reason, notice=notice)
 
-    def _asked_for(self, upstream: tuple[Step, ...]) -> str:
+    def _asked_for(self, address: Address, upstream: tuple[Step, ...]) -> str:
         """Return why a step runs whatever its file holds."""
+        if self.selection.force:
+            return "asked for by --force"
+        if address in self.selection.again:
+            return "a run of it failed or diverged"
         before = [f"{step.address.stage} runs before it" for step in upstream if step.reason]
-        return "asked for by --force" if self.selection.force else "".join(before[:1])
+        return "".join(before[:1])
 
 
 def _paired(steps: list[Step]) -> list[Step]:

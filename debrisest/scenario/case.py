@@ -1,6 +1,6 @@
 """One experiment of a scenario file."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
@@ -28,6 +28,8 @@ class Case:
     folder: Path
     """From which the paths of files in the scenario count."""
     plugins: tuple[Plugin, ...] = ()
+    simulated_as: str = ""
+    """The name of its simulation, which points of a grid may share; empty: its own."""
 
     @cached_property
     def scenario(self) -> Scenario:
@@ -42,6 +44,17 @@ class Case:
         """Return the case, which takes a scenario for the one that its document was found to be."""
         vars(self)["scenario"] = scenario
         return self
+
+    @property
+    def simulation(self) -> Self:
+        """Return the case as its simulation is called."""
+        own = replace(self, name=self.simulated_as or self.name, simulated_as="")
+        return own.known_as(self.scenario)
+
+    @property
+    def draws(self) -> str:
+        """Return the name that the draws of its runs are bound to."""
+        return self.scenario.draws or self.simulated_as or self.name
 
     @cached_property
     def measured(self) -> Data:

@@ -208,3 +208,11 @@ def _place(source: str, mark: Any) -> Place:
 def _said(error: yaml.MarkedYAMLError) -> str:
     context = f"{error.context}: " if error.context else ""
     return f"not valid YAML: {context}{error.problem}"
+
+
+def nested(path: tuple[str, ...], value: Any, place: Place) -> Document:
+    """Return a document that has one value, at a key path that was written at a place."""
+    places: dict[KeyPath, Place] = {path[: depth + 1]: place for depth in range(len(path))}
+    for name in reversed(path):
+        value = {name: value}
+    return Document(value, places)

@@ -1,13 +1,11 @@
 """Read scenario files: cases, grids and overrides, every problem told at once."""
 
-import itertools
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import reduce
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from debrisest.catalog import required_keys
 from debrisest.errors import UserError
@@ -20,9 +18,11 @@ from debrisest.scenario.document import (
     Place,
     Problem,
     merge,
+    nested,
     parse,
     sub_document,
 )
+from debrisest.scenario.grid import points
 from debrisest.scenario.limits import extreme_numbers
 from debrisest.scenario.measured import told_by_data
 from debrisest.scenario.mistakes import allowed_names, validated
@@ -86,18 +86,19 @@ def load_scenario(
     extreme = [p for one in given for p in _placed(one, extreme_numbers(one.value))]
     if extreme:
         raise UserError(dict.fromkeys(map(str, [*problems, *extreme])))
-    own: dict[str, Any] = {k: v for k, v in document.value.items() if k in ("cases", "grid")}
+    own = {k: v for k, v in document.value.items() if k in CasesAndGrid.model_fields}
     listed, found = validated(Document(own, document.places), CasesAndGrid, path.parent)
     problems += found
     cases: dict[str, Case] = {}
     layers_of = _layers_of_cases(document, listed or CasesAndGrid())
     problems += _placed(document, _case_name_problems(layers_of, listed or CasesAndGrid()))
-    for name, layers in layers_of.items():
+    for name, (simulated_as, layers) in layers_of.items():
         complete, wrong = told_by_data(reduce(_laid_on, [*layers, *laid_on]), path.parent)
         scenario, found = validated(complete, scenario_model(), path.parent)
         problems += wrong + found
         if scenario is not None and not wrong:
-            case = Case(path.stem, name, complete.value, path.parent.absolute(), loaded)
+            folder = path.parent.absolute()
+            case = Case(path.stem, name, complete.value, folder, loaded, simulated_as)
             cases[name] = case.known_as(scenario)
             problems += _placed(complete, case_problems(cases[name]))
     if not problems:
@@ -139,16 +140,16 @@ def _override(text: str, document: Document) -> Document:
     parsed, problems = parse(f"value: {value}", place.source)
     if problems:
         raise UserError(f"{place}: the value is not valid YAML")
-    if key.split(".")[0] in ("cases", "grid"):
-        raise UserError(f"{place}: cases and grid cannot be set, since --set goes on every case")
     role, *named = key.split(".")
+    if role in CasesAndGrid.model_fields:
+        raise UserError(f"{place}: {role} cannot be set, since --set goes on every case")
     for varied in document.value.get("grid") or {}:
         if f"{varied}.".startswith(f"{key}.") or f"{key}.".startswith(f"{varied}."):
             raise UserError(f"{place}: the grid varies {varied} and names its cases after it")
     known = document.value.get(role)
     if role in _NAMED and isinstance(known, dict) and named and named[0] not in known:
         raise UserError(f"{place}: unknown name {named[0]!r}; {allowed_names(named[0], known)}")
-    return _nested(tuple(key.split(".")), parsed.value["value"], place)
+    return nested(tuple(key.split(".")), parsed.value["value"], place)
 
 
 def _placed(document: Document, found: Iterable[tuple[KeyPath, str]]) -> list[Problem]:
@@ -158,51 +159,38 @@ def _placed(document: Document, found: Iterable[tuple[KeyPath, str]]) -> list[Pr
     ]
 
 
-def _layers_of_cases(document: Document, listed: CasesAndGrid) -> dict[str, list[Document]]:
-    """Return what is laid on each other for every case, grid and cases multiplied out."""
-    base = Document(
-        {key: value for key, value in document.value.items() if key not in ("cases", "grid")},
-        document.places,
-    )
+class _Layers(NamedTuple):
+    """What is laid on each other for a case."""
+
+    simulated_as: str
+    documents: list[Document]
+
+
+def _layers_of_cases(document: Document, listed: CasesAndGrid) -> dict[str, _Layers]:
+    """Return the layers of every case, grid and cases multiplied out."""
+    own = CasesAndGrid.model_fields
+    base = Document({k: v for k, v in document.value.items() if k not in own}, document.places)
     cases = {name: [base, sub_document(document, ("cases", name))] for name in listed.cases}
+    cases = cases or {NOMINAL: [base]}
     if not listed.grid:
-        return cases or {NOMINAL: [base]}
-    points = [_grid_point(document, point) for point in _combinations(listed.grid)]
-    names = [name for name, _ in points]
-    if len(set(names)) < len(names):
+        return {name: _Layers(name, documents) for name, documents in cases.items()}
+    grid = points(document, listed.grid)
+    if len({point.name for point in grid}) < len(grid):
         raise UserError(f"{document.place(('grid',))}: two points of the grid have one name")
-    if not cases:
-        return {name: [base, over] for name, over in points}
-    return {
-        f"{case},{name}": [*layers, over] for case, layers in cases.items() for name, over in points
-    }
+    found: dict[str, _Layers] = {}
+    for case, documents in cases.items():
+        prefix = [case] if listed.cases else []
+        shared = [Document({"draws": case})] if listed.common_draws else []
+        for point in grid:
+            truth = ",".join([*prefix, *filter(None, [point.simulated_as])]) or case
+            name = ",".join([*prefix, point.name])
+            found[name] = _Layers(truth, [*shared, *documents, point.laid])
+    return found
 
 
 def _case_name_problems(
-    documents: Iterable[str], listed: CasesAndGrid
+    layers_of: dict[str, _Layers], listed: CasesAndGrid
 ) -> Iterator[tuple[KeyPath, str]]:
-    for name, why in case_name_problems(documents):
+    truths = [layers.simulated_as for layers in layers_of.values()]
+    for name, why in case_name_problems(dict.fromkeys([*layers_of, *truths])):
         yield ("cases", name) if name in listed.cases else ("grid",), why
-
-
-def _combinations(grid: dict[str, list[Any]]) -> list[dict[str, Any]]:
-    return [dict(zip(grid, values)) for values in itertools.product(*grid.values())]
-
-
-def _grid_point(document: Document, point: dict[str, Any]) -> tuple[str, Document]:
-    """Return the name of a point of the grid, and what it lays on the scenario."""
-    name = ",".join(f"{key.rsplit('.', 1)[-1]}={value}" for key, value in point.items())
-    value: dict[str, Any] = {}
-    places: dict[KeyPath, Place] = {}
-    for key, at in point.items():
-        over = _nested(tuple(key.split(".")), at, document.place(("grid", key)))
-        merged = merge(Document(value, places), over)
-        value, places = merged.value, merged.places
-    return re.sub(r"[^A-Za-z0-9_.+=,-]", "", name), Document(value, places)
-
-
-def _nested(path: tuple[str, ...], value: Any, place: Place) -> Document:
-    places: dict[KeyPath, Place] = {path[: depth + 1]: place for depth in range(len(path))}
-    for name in reversed(path):
-        value = {name: value}
-    return Document(value, places)

@@ -1,7 +1,7 @@
 """The scenario of a single case, complete in itself: what a file of results stores of it.
 
-Read again, it is the same case: the same name, to which its draws are bound, the same numbers to
-the bit, and every default written out. Of the tables it has those that need no other case.
+Read again, it is the same case: the same name, the same draws, the same numbers to the bit, and
+every default written out. Of the tables it has those that need no other case.
 """
 
 from collections.abc import Collection
@@ -23,6 +23,8 @@ def resolved(case: Case) -> str:
     if case.source:
         measured = case.source.keys_with(lambda name: str(case.folder / name))
         value = {k: v for k, v in value.items() if k not in SIMULATED} | {"measured": measured}
+    if case.draws != case.name:
+        value["draws"] = case.draws
     value["estimators"] = {name: _estimator(case, value, name) for name in case.estimators}
     value["tables"] = _tables(case, value["tables"])
     return text_of(value | {"cases": {case.name: {}}})

@@ -5,7 +5,14 @@ from functools import cache, reduce
 from operator import or_
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, create_model, model_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    ValidationInfo,
+    create_model,
+    field_validator,
+    model_validator,
+)
 
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.catalog import CATALOG, kind_of
@@ -137,6 +144,9 @@ class Scenario(Keys):
     title: Line
     source: Line = ""
     seed: Annotated[int, Field(ge=0, lt=2**63)]
+    draws: CaseName | None = Field(
+        None, description="name that draws are bound to; default: the case's own"
+    )
     runs: Annotated[int, Field(ge=1, le=MOST_RUNS)]
     keep: Annotated[int, Field(ge=1)] | Literal["all"] = Field(
         1, description="runs whose trajectories are kept, the first ones, or `all`"
@@ -209,6 +219,14 @@ class CasesAndGrid(Keys):
     grid: dict[str, Annotated[list[Any], Field(min_length=1)]] = Field(
         {}, description="key.path: values; every combination is a case"
     )
+    common_draws: bool = Field(False, description="let all points of the grid share their draws")
+
+    @field_validator("common_draws")
+    @classmethod
+    def _of_a_grid(cls, common: bool, others: ValidationInfo) -> bool:
+        if common and not others.data.get("grid"):
+            raise ValueError("there is no grid; cases share draws where draws has one name in all")
+        return common
 
 
 class ScenarioFile(Scenario, CasesAndGrid):

@@ -20,13 +20,13 @@ def inputs(case: Case, _: str) -> dict[str, Any]:
         source = case.source.fingerprint() | names | {"digest": case.source.digest(case.folder)}
         return {"version": VERSION, "measured": source, **parts}
     told = scenario.model_dump(mode="json", include={"seed", "duration_s", "step_s"})
-    return {"version": VERSION, "case": case.name, **told, **parts}
+    return {"version": VERSION, "case": case.draws, **told, **parts}
 
 
 def run(case: Case, _: str, data: Data) -> Data:
     """Return what is known and measured of the runs whose numbers are in ``data``."""
     scenario, clock, runs = case.scenario, case.clock, data["run"].astype(int)
-    draws = Draws(scenario.seed, case.name, runs.tolist())
+    draws = Draws(scenario.seed, case.draws, runs.tolist())
     result: Data = case.measured_runs(runs) if case.source else {"time_s": clock.times}
     for path, part in scenario.simulation.items():
         name = path.partition(".")[2]

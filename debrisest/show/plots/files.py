@@ -1,9 +1,11 @@
 """Figures on disk, as PNG, SVG or PDF."""
 
 from collections.abc import Iterator, Sequence
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -12,7 +14,7 @@ from debrisest.show.plots.style import style
 
 FORMATS: dict[str, dict[str, Any]] = {
     "png": {"dpi": 150, "metadata": {"Software": None}},
-    "svg": {"dpi": 300, "metadata": {"Date": None}},
+    "svg": {"dpi": 200, "metadata": {"Date": None}},
     "pdf": {"dpi": 300, "metadata": {"CreationDate": None}},
 }
 """In an SVG or a PDF only what is dense has a resolution."""
@@ -20,6 +22,7 @@ USUAL = ("png", "svg")
 MOST_MARKERS, MOST_VERTICES = 300, 2000
 """What has more of them is drawn as an image, which keeps an SVG below about 1 MB."""
 
+_LAID_OUT: dict[Any, Any] = {"figure.constrained_layout.use": False}
 _NO_MARKER = (None, "None", "none", " ", "")
 
 
@@ -28,13 +31,28 @@ def write(
 ) -> Iterator[Path]:
     """Write a figure in some FORMATS, each in one step; yield the paths."""
     _rasterise_dense(figure)
+    lay_out(figure)
     for form in formats:
-        options = FORMATS[form]
         path = folder / f"{name}.{form}"
-        with replacing(path) as temporary, style():
-            figure.savefig(temporary, format=form, **options)
-        figure.set_layout_engine("none")
+        with replacing(path) as temporary:
+            save(figure, temporary, form, **FORMATS[form])
         yield path
+
+
+def lay_out(figure: Figure) -> None:
+    """Lay a figure out, once and for all: matplotlib would draw it twice for every file."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        with style():
+            engine.execute(figure)
+        with mpl.rc_context(_LAID_OUT):
+            figure.set_layout_engine(None)
+
+
+def save(figure: Figure, target: Path | BytesIO, form: str, **options: Any) -> None:
+    """Write a figure that is laid out."""
+    with style(), mpl.rc_context(_LAID_OUT):
+        figure.savefig(target, format=form, **options)
 
 
 def _rasterise_dense(figure: Figure) -> None:

@@ -15,6 +15,7 @@ from debrisest.files import put
 from debrisest.results.results import Results
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.axes import heading
+from debrisest.show.plots.files import lay_out, save
 from debrisest.show.plots.gather import Source, single_runs
 from debrisest.show.plots.space import same_scale, spatial_axes
 from debrisest.show.plots.style import BLUE, GREY, VERMILION, style
@@ -73,6 +74,6 @@ def _frames(data: Data, context: str) -> Iterator[Any]:
             line.set_data_3d(*points.T)
         time.set_text(f"{times[epoch]:g} s")
         drawn = BytesIO()
-        figure.savefig(drawn, format="png", dpi=_DPI)
-        figure.set_layout_engine("none")
+        lay_out(figure)
+        save(figure, drawn, "png", dpi=_DPI)
         yield Image.open(drawn).convert("RGB").quantize(_COLOURS)

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from debrisest.results.status import Wanted
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.draw import draw, sources
+from debrisest.show.plots.files import lay_out, save
 from debrisest.show.plots.kinds import FIGURES
-from debrisest.show.plots.style import style
 
 _DPI, _COLOURS = 90, 64
 
@@ -43,7 +43,7 @@ def _address(figure: Figure) -> str:
     from PIL import Image
 
     drawn, small = BytesIO(), BytesIO()
-    with style():
-        figure.savefig(drawn, format="png", dpi=_DPI, metadata={"Software": None})
+    lay_out(figure)
+    save(figure, drawn, "png", dpi=_DPI, metadata={"Software": None})
     Image.open(drawn).convert("RGB").quantize(_COLOURS).save(small, "png", optimize=True)
     return "data:image/png;base64," + b64encode(small.getvalue()).decode()
