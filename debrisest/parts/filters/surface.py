@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Data
 from debrisest.filters.estimates import Estimates
@@ -36,7 +35,9 @@ class Surface(FilterPart):
     makes_start = True
     libraries = ("cv2", "pycolmap", "skimage")
     kind: Literal["surface"]
-    method: Literal["poisson", "fusion"] | None = Field(None, description="default: by the data")
+    method: Literal["poisson", "fusion"] | None = None
+    """Screened Poisson surface of the dense cloud, or silhouettes fused with depth; none: the data
+    choose."""
 
     def run(self, model: ShapeModel, given: Given) -> Estimates:
         """Return volume, centre and inertia of density one, the same at all epochs, and meshes."""

@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import ValidationInfo, field_validator, model_validator
 
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
@@ -21,8 +21,11 @@ class GuessedQuantity(Keys):
     """A value with its standard deviation, the same in all components or one for each."""
 
     value: Nested
+    """As many numbers as the quantity has, such as three, or a row of three for each feature."""
     sigma: NonNegative | list[NonNegative] | list[list[NonNegative]]
-    unit: str | None = Field(None, description="default: SI and radians")
+    """Standard deviation of each number, or one for all."""
+    unit: str | None = None
+    """`deg/s`, `deg` or `km` where it is not SI and radians."""
 
 
 class GivenGuess(SimulationPart):
@@ -30,10 +33,11 @@ class GivenGuess(SimulationPart):
 
     tried = True
     kind: Literal["given"]
-    quantities: dict[str, GuessedQuantity] = Field(
-        {}, description="name of an estimated quantity: value, sigma and unit"
-    )
-    file: str | None = Field(None, description="CSV with the columns name,component,value,sigma")
+    quantities: dict[str, GuessedQuantity] = {}
+    """What is guessed: a quantity is called as in the files of `simulate`, without `start_`."""
+    file: str | None = None
+    """CSV with the columns `name,component,value,sigma`, components counted from 1, rows of a list
+    of lists after each other; in SI and radians."""
 
     @model_validator(mode="before")
     @classmethod
