@@ -10,6 +10,7 @@ from pydantic import AfterValidator, Field, create_model, model_validator
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.catalog import CATALOG, kind_of
 from debrisest.clock import Clock
+from debrisest.errors import allowed_names
 from debrisest.roles import (
     FilterPart,
     Keys,
@@ -22,7 +23,6 @@ from debrisest.roles import (
     StartPart,
     Window,
 )
-from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.names import CaseName, Line, PartName, TableName
 from debrisest.scenario.window import WindowText, window_of
 from debrisest.vocabulary import VOCABULARY, possible_units
@@ -99,7 +99,7 @@ class Table(Keys):
             allowed = possible_units(name)
             if unit not in allowed:
                 raise ValueError(
-                    f"{name} cannot be shown in {unit!r}; allowed: {', '.join(allowed)}"
+                    f"{name} cannot be shown in {unit!r}; {allowed_names(unit, allowed)}"
                 )
         return self
 

@@ -10,6 +10,7 @@ from pydantic import ValidationInfo, field_validator, model_validator
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
+from debrisest.errors import allowed_names
 from debrisest.roles import Keys, NonNegative, SimulationPart
 from debrisest.vocabulary import AXIS_LENGTH, VOCABULARY, possible_units, table_scale
 
@@ -84,10 +85,11 @@ def _require_fitting(name: str, quantity: GuessedQuantity) -> None:
     if declared is None:
         known = [other.removeprefix("start_") for other in VOCABULARY if other.startswith("start_")]
         allowed = [other for other in known if not other.endswith("_sigma")]
-        raise ValueError(f"no estimator starts from {name!r}; allowed: {', '.join(allowed)}")
+        raise ValueError(f"no estimator starts from {name!r}; {allowed_names(name, allowed)}")
     units = [unit for unit in possible_units(f"start_{name}") if unit]
     if quantity.unit is not None and quantity.unit not in units:
-        raise ValueError(f"{name} cannot be in {quantity.unit!r}; allowed: {', '.join(units)}")
+        said = allowed_names(quantity.unit, units)
+        raise ValueError(f"{name} cannot be in {quantity.unit!r}; {said}")
     axes = declared.axes[1:]
     lengths = [AXIS_LENGTH.get(axis) for axis in axes]
     shape = _shape(name, quantity.value)
