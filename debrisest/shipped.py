@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-from debrisest.errors import UserError
+from debrisest.errors import UserError, allowed_names
 from debrisest.files import replacing
-from debrisest.scenario.mistakes import allowed_names
 
 _PACKAGE = Path(__file__).parent
 _FOLDERS = (_PACKAGE / "configs", _PACKAGE.parent / "configs")

@@ -10,6 +10,9 @@ ruff format --check .
 mypy
 lint-imports
 pytest -n auto
+if python -c "import furo, myst_parser, sphinx" 2>/dev/null; then
+    sphinx-build -q -W --keep-going -b html docs "$(mktemp -d)"
+fi
 
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT

@@ -39,8 +39,7 @@ def compare(
     What differs in the scenario comes first, then each cell of the tables with the interval of its
     difference, of pairs of runs where both sides had the same draws.
     """
-    from debrisest.errors import UserError
-    from debrisest.scenario.mistakes import allowed_names
+    from debrisest.errors import UserError, allowed_names
     from debrisest.show.compare.cells import compared
     from debrisest.show.compare.render import render_comparison
     from debrisest.show.compare.settings import different_settings

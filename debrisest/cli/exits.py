@@ -1,13 +1,15 @@
 """How a command ends: 0 well, 1 something is wrong, 2 wrong input, 130 or 143 interrupted."""
 
 import errno
+import re
 import sys
 from typing import Any
 
+from typer import BadParameter
 from typer.core import TyperGroup
 
 from debrisest.cli.streams import steady
-from debrisest.errors import UserError
+from debrisest.errors import UserError, meant
 from debrisest.interrupts import SENTENCE
 
 
@@ -29,6 +31,9 @@ class Commands(TyperGroup):
         """Run a command."""
         try:
             return super().invoke(ctx)
+        except BadParameter as error:
+            error.message += _meant(error)
+            raise
         except UserError as error:
             _stop(2, *error.problems)
         except OSError as error:
@@ -43,6 +48,14 @@ def exit_if(wrong: bool) -> None:
     """End with exit code 1 if something is wrong."""
     if wrong:
         raise SystemExit(1)
+
+
+def _meant(error: BadParameter) -> str:
+    """Return a question after the word that was meant where an option has a few of them."""
+    if "is not one of" not in error.message:
+        return ""
+    given, *words = re.findall("'(.*?)'", error.message)
+    return meant(given, words)
 
 
 def _sentence(error: OSError) -> str:

@@ -6,6 +6,7 @@ from types import ModuleType
 from typing import Any, get_args
 
 from debrisest.catalog import CATALOG, kind_of
+from debrisest.errors import allowed_names
 from debrisest.quantity import Quantity
 from debrisest.roles import Part, SimulationPart
 from debrisest.vocabulary import VOCABULARY
@@ -59,7 +60,7 @@ def _wrong(part: Any, before: Sequence[Any]) -> str:
         return 'this part needs a key of its own name, kind: Literal["its_name"]'
     role = getattr(part, "role", None)
     if role not in CATALOG:
-        return f"unknown role {role!r}; allowed: {', '.join(CATALOG)}"
+        return f"unknown role {role!r}; {allowed_names(str(role), CATALOG)}"
     if inspect.isabstract(part):
         return f"this part lacks {', '.join(sorted(part.__abstractmethods__))}"
     for other in [*CATALOG[role], *(one for one in before if _is_part(one))]:

@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from debrisest.arrays import Data
-from debrisest.errors import UserError
+from debrisest.errors import UserError, allowed_names
 from debrisest.results import store
 from debrisest.results.address import STAGES, Address
 from debrisest.results.chunk import Chunk
 from debrisest.results.failures import Failure, failures_of
 from debrisest.results.joined import joined
 from debrisest.scenario.document import parse
-from debrisest.scenario.mistakes import allowed_names
 from debrisest.vocabulary import VOCABULARY, has_runs
 
 if TYPE_CHECKING:

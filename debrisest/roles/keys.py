@@ -1,9 +1,11 @@
 """What keys of a scenario can hold: vectors, positive numbers, unit quaternions, limits."""
 
-from typing import Annotated, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetJsonSchemaHandler
+
+from debrisest.roles.docstrings import attribute_docstrings
 
 Window = tuple[float, float]
 """From the first time (included) to the second (excluded), in seconds."""
@@ -21,7 +23,9 @@ def _unit_quaternion(q: list[float]) -> list[float]:
 
 
 UnitQuaternion = Annotated[
-    list[float], Field(min_length=4, max_length=4), AfterValidator(_unit_quaternion)
+    list[float],
+    Field(min_length=4, max_length=4, json_schema_extra={"$comment": "of norm 1 within 0.001"}),
+    AfterValidator(_unit_quaternion),
 ]
 
 
@@ -32,11 +36,27 @@ def _ascending(limits: list[float]) -> list[float]:
 
 
 _Number = TypeVar("_Number")
-Limits = Annotated[list[_Number], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
+Limits = Annotated[
+    list[_Number],
+    Field(min_length=2, max_length=2, json_schema_extra={"$comment": "ascending"}),
+    AfterValidator(_ascending),
+]
 """Lower and upper limit, such as ``Limits[Positive]``."""
 
 
 class Keys(BaseModel):
-    """A mapping of a scenario: unknown keys, infinities and texts for numbers are errors."""
+    """A mapping of a scenario: unknown keys, infinities and texts for numbers are errors.
+
+    What stands below a key as a text describes it, in the schema and in the guide to scenarios.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: Any, handler: GetJsonSchemaHandler) -> Any:
+        schema = handler(core)
+        keys = handler.resolve_ref_schema(schema).get("properties", {})
+        for key, text in attribute_docstrings(cls).items():
+            if key in keys:
+                keys[key]["description"] = text
+        return schema

@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from debrisest.errors import UserError
+from debrisest.errors import UserError, allowed_names
 from debrisest.results import store
 from debrisest.results.address import Address
 from debrisest.results.assessed import SIMULATED
@@ -16,7 +16,6 @@ from debrisest.results.status import Wanted, out_of_date
 from debrisest.runner.stages.pipeline import STAGES, stages_of
 from debrisest.scenario.case import Case
 from debrisest.scenario.load import LoadedScenario
-from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.schema import MOST_RUNS
 
 RUNS_PER_FILE = 20

@@ -8,11 +8,11 @@ from debrisest.arrays import Data
 from debrisest.assessment.statistics import window_mask
 from debrisest.clock import Clock
 from debrisest.draws import Draws
+from debrisest.errors import allowed_names
 from debrisest.scenario.case import Case
 from debrisest.scenario.contracts import Found, parts_that_do_not_fit
 from debrisest.scenario.document import KeyPath
 from debrisest.scenario.kept import kept_too_late, not_kept
-from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.names import same_on_disk
 from debrisest.scenario.schema import Scenario, Table
 from debrisest.scenario.window import window_of

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from debrisest.catalog import required_keys
-from debrisest.errors import UserError
+from debrisest.errors import UserError, allowed_names, meant
 from debrisest.plugins.load import Plugin, load_plugins
 from debrisest.scenario.case import Case
 from debrisest.scenario.checks import case_problems, file_problems
@@ -25,15 +25,12 @@ from debrisest.scenario.document import (
 from debrisest.scenario.grid import points
 from debrisest.scenario.limits import extreme_numbers
 from debrisest.scenario.measured import told_by_data
-from debrisest.scenario.mistakes import allowed_names, validated
+from debrisest.scenario.mistakes import NAMED, validated
 from debrisest.scenario.names import case_name_problems, check_scenario_name
 from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
 
 NOMINAL = "nominal"
 """The case of a scenario that has neither cases nor a grid."""
-
-_NAMED = ("observers", "sensors", "starts", "estimators")
-"""Keys whose entries have names of the user's choice."""
 
 
 MOST_BYTES = 20_000_000
@@ -120,7 +117,10 @@ def _read(path: Path) -> str:
         raise UserError(f"{path}: this is a folder; give a scenario file (YAML)") from None
     except OSError as error:
         reason = error.strerror or "cannot be read"
-        raise UserError(f"{path}: {reason}; give the path of a scenario file (YAML)") from None
+        beside = meant(path.name, (one.name for one in path.parent.glob("*.yaml")))
+        raise UserError(
+            f"{path}: {reason}; give the path of a scenario file (YAML){beside}"
+        ) from None
     if len(raw) > MOST_BYTES:
         raise UserError(f"{path}: over {MOST_BYTES // 10**6} MB; give a scenario file (YAML)")
     try:
@@ -147,7 +147,7 @@ def _override(text: str, document: Document) -> Document:
         if f"{varied}.".startswith(f"{key}.") or f"{key}.".startswith(f"{varied}."):
             raise UserError(f"{place}: the grid varies {varied} and names its cases after it")
     known = document.value.get(role)
-    if role in _NAMED and isinstance(known, dict) and named and named[0] not in known:
+    if role in NAMED and isinstance(known, dict) and named and named[0] not in known:
         raise UserError(f"{place}: unknown name {named[0]!r}; {allowed_names(named[0], known)}")
     return nested(tuple(key.split(".")), parsed.value["value"], place)
 

@@ -1,14 +1,16 @@
 """From what the schema finds wrong to sentences with a file, a line and a suggestion."""
 
-import difflib
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
+from debrisest.errors import allowed_names, meant
 from debrisest.scenario.document import Document, KeyPath, Problem
+
+NAMED = ("observers", "sensors", "starts", "estimators")
+"""Keys whose entries have names of the user's choice."""
 
 
 def validated(document: Document, model: Any, folder: Path) -> tuple[Any, list[Problem]]:
@@ -27,17 +29,26 @@ def problems_of(
     for detail in error.errors(include_url=False):
         path = _path_in(document.value, detail)
         name = ".".join(map(str, path)) or "scenario"
-        message = _message(detail, model)
+        message = _message(detail, model) + _another(path, detail, document)
         found.append(Problem(document.place(path), f"{name}: {message}"))
     return found
 
 
-def allowed_names(given: str, allowed: Iterable[str]) -> str:
-    """Return the allowed names, and the one that was probably meant."""
-    names = list(allowed)
-    close = difflib.get_close_matches(given, names, n=1, cutoff=0.6)
-    hint = f" (did you mean {close[0]}?)" if close else ""
-    return f"allowed: {', '.join(names)}{hint}"
+def _another(path: KeyPath, detail: ErrorDetails, document: Document) -> str:
+    """Return what was meant where that is known from elsewhere in the document only.
+
+    A key may stand below another one; and a slip in the name of a case's or a grid's part makes a
+    new part, which lacks what it needs.
+    """
+    if detail["type"] == "extra_forbidden" and len(path) == 1:
+        below = (".".join(map(str, at)) for at in document.places if at[-1:] == path != at)
+        deeper = next(below, "")
+        return f" (did you mean {deeper}?)" if deeper else ""
+    if len(path) < 2 or detail["type"] not in ("union_tag_not_found", "value_error"):
+        return ""
+    role, name, *_ = path
+    named = document.value[role] if role in NAMED else {}
+    return meant(str(name), [other for other in named if other != name])
 
 
 def _path_in(value: Any, detail: ErrorDetails) -> KeyPath:

@@ -17,6 +17,7 @@ from pydantic import (
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.catalog import CATALOG, kind_of
 from debrisest.clock import Clock
+from debrisest.errors import allowed_names
 from debrisest.roles import (
     FilterPart,
     Keys,
@@ -29,7 +30,6 @@ from debrisest.roles import (
     StartPart,
     Window,
 )
-from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.names import CaseName, Line, PartName, TableName
 from debrisest.scenario.window import WindowText, window_of
 from debrisest.vocabulary import VOCABULARY, possible_units
@@ -65,9 +65,13 @@ class Divergence(Keys):
     """A run has diverged if a quantity over a window, by default its RMS, is above a limit."""
 
     quantity: QuantityName
-    above: Positive = Field(description="in the unit of the tables")
+    """A quantity of the tables."""
+    above: Positive
+    """The limit, in the unit of the tables."""
     window: WindowText
-    statistic: StatisticName = Field("rms", description="as it is over the window of one run")
+    """A window."""
+    statistic: StatisticName = "rms"
+    """A statistic, of which the figure per run is used."""
 
 
 class Table(Keys):
@@ -76,15 +80,25 @@ class Table(Keys):
     What was simulated has no estimator.
     """
 
-    table: TableName = Field(description="the paper's number, or a short word")
+    table: TableName
+    """The paper's number, or a short word; several tables may share it."""
     title: Line
+    """Its heading."""
     stage: Literal["simulate", "recover", "filter"]
+    """Whose errors: those of the recovery or those of the filter; or figures of what was
+    simulated."""
     quantities: Annotated[list[QuantityName], Field(min_length=1)]
+    """Quantities."""
     statistics: Annotated[list[StatisticName], Field(min_length=1)]
+    """Statistics."""
     windows: Annotated[list[WindowText], Field(min_length=1)]
-    cases: list[str] | None = Field(None, description="names of cases or means; default: all")
-    units: dict[QuantityName, str] = Field({}, description="quantity: another unit than its own")
-    count_diverged: bool = Field(False, description="let runs that diverged count as well")
+    """Windows."""
+    cases: list[str] | None = None
+    """Cases and means that the table shows; none: all."""
+    units: dict[QuantityName, str] = {}
+    """Another unit than the quantity's own, such as `position: km`."""
+    count_diverged: bool = False
+    """Runs that diverged count as well, as far as they are finite."""
 
     @model_validator(mode="after")
     def _known_units(self) -> "Table":
@@ -92,7 +106,7 @@ class Table(Keys):
             allowed = possible_units(name)
             if unit not in allowed:
                 raise ValueError(
-                    f"{name} cannot be shown in {unit!r}; allowed: {', '.join(allowed)}"
+                    f"{name} cannot be shown in {unit!r}; {allowed_names(unit, allowed)}"
                 )
         return self
 
@@ -100,22 +114,35 @@ class Table(Keys):
 class Tables(Keys):
     """How results are scored and laid out."""
 
-    published: str | None = Field(None, description="CSV of published values, beside the scenario")
-    scored_window: WindowText | None = Field(None, description="where axes are relabeled")
+    published: str | None = None
+    """CSV of published values, relative to the scenario file."""
+    scored_window: WindowText | None = None
+    """Epochs by which a run's estimated principal axes are matched with the true ones; none: the
+    last third."""
     diverged: list[Divergence] = []
-    means: dict[CaseName, list[str]] = Field({}, description="name of a mean: its cases")
+    """Which runs count as diverged."""
+    means: dict[CaseName, list[str]] = {}
+    """Means over cases: a name that no case has, and its cases."""
     layout: list[Table] = []
+    """The tables."""
 
 
 class Estimator(Keys):
     """Recovery, start and filter, as far as an estimator has them."""
 
     recovery: RecoveryPart | None = None
+    """Makes a signal over all epochs from measurements of single epochs."""
     problem: ProblemPart | None = None
+    """What is estimated, from what, by which model."""
     start: StartPart | None = None
+    """What is known before the first measurement."""
     filter: FilterPart | None = None
-    cases: list[str] | None = Field(None, description="where it is used; default: everywhere")
-    bound: str = Field("bound", description="estimator that stands in the column bound of tables")
+    """The algorithm."""
+    cases: list[str] | None = None
+    """Cases in which the estimator is used; none: all."""
+    bound: str = "bound"
+    """Estimator whose figures stand in the column `bound` of the tables; without that estimator it
+    is empty."""
 
     @model_validator(mode="after")
     def _complete(self) -> "Estimator":
@@ -142,26 +169,40 @@ class Scenario(Keys):
     """One case of a scenario, everything resolved."""
 
     title: Line
+    """Stands above the tables."""
     source: Line = ""
+    """Where the experiment comes from, such as a paper."""
     seed: Annotated[int, Field(ge=0, lt=2**63)]
-    draws: CaseName | None = Field(
-        None, description="name that draws are bound to; default: the case's own"
-    )
+    """All randomness follows from it."""
+    draws: CaseName | None = None
+    """What draws are bound to, beside the seed; default: the case's own name. Cases of one name share
+    theirs."""
     runs: Annotated[int, Field(ge=1, le=MOST_RUNS)]
-    keep: Annotated[int, Field(ge=1)] | Literal["all"] = Field(
-        1, description="runs whose trajectories are kept, the first ones, or `all`"
-    )
+    """Monte Carlo runs per case; `--runs N` overrides it."""
+    keep: Annotated[int, Field(ge=1)] | Literal["all"] = 1
+    """Runs whose trajectories are kept, the first ones, or `all`; `--keep` overrides it."""
     duration_s: Positive
+    """Length; a whole number of steps, 2 to 10 million. Measured data tell it."""
     step_s: Positive | None = None
+    """Time between epochs, which a simulation needs; the first is at 0, the end is not an epoch."""
     measured: SourcePart | None = None
+    """Files in the place of the simulation."""
     target: SimulationPart | None = None
+    """The body; a debris without extent has none."""
     orbit: SimulationPart | None = None
+    """The target's orbit, with `seen_from_leader` the observer's; many parts need it."""
     motion: SimulationPart | None = None
+    """How the body rotates, if it does."""
     observers: dict[str, SimulationPart] = {}
+    """How the chaser moves, or satellites that observe."""
     sensors: dict[str, SimulationPart] = {}
+    """What is measured, and what estimators are told of it; a simulation needs it."""
     starts: dict[str, SimulationPart] = {}
+    """What is known at first, the same for all estimators."""
     estimators: dict[PartName, Estimator]
+    """What is compared; the same in all cases."""
     tables: Tables = Tables()
+    """How results are scored and laid out."""
 
     @property
     def clock(self) -> Clock:
@@ -210,16 +251,18 @@ class Measured(Keys):
     """The key of a scenario file that says where measured data come from."""
 
     measured: SourcePart
+    """Where measured data come from."""
 
 
 class CasesAndGrid(Keys):
     """The keys of a scenario file that make its cases."""
 
-    cases: dict[CaseName, dict[str, Any]] = Field({}, description="name: what differs in this case")
-    grid: dict[str, Annotated[list[Any], Field(min_length=1)]] = Field(
-        {}, description="key.path: values; every combination is a case"
-    )
-    common_draws: bool = Field(False, description="let all points of the grid share their draws")
+    cases: dict[CaseName, dict[str, Any]] = {}
+    """What differs in each case, laid on the scenario."""
+    grid: dict[str, Annotated[list[Any], Field(min_length=1)]] = {}
+    """Key path: values; every combination is a case."""
+    common_draws: bool = False
+    """Let all points of the grid share their draws."""
 
     @field_validator("common_draws")
     @classmethod
@@ -229,7 +272,7 @@ class CasesAndGrid(Keys):
         return common
 
 
-class ScenarioFile(Scenario, CasesAndGrid):
+class ScenarioFile(CasesAndGrid, Scenario):
     """A scenario file: a scenario, and its cases or a grid that makes them."""
 
 
@@ -250,28 +293,26 @@ def _catalog() -> tuple[tuple[type[Part], ...], ...]:
 
 @cache
 def _scenario_model(base: type[Scenario], _: Any) -> Any:
-    create: Any = create_model
-    roles = ("recovery", "problem", "start", "filter")
-    optional = {role: (_kinds(role) | None, None) for role in roles}
-    estimator = create("Estimator", __base__=Estimator, **optional)
-    return create(
-        base.__name__,
-        __base__=base,
-        target=(_kinds("target") | None, None),
-        orbit=(_kinds("orbit") | None, None),
-        motion=(_kinds("motion") | None, None),
-        observers=(_by_name(_kinds("observers")), {}),
-        measured=(_kinds("measured") | None, None),
-        sensors=(_by_name(_kinds("sensors")), {}),
-        starts=(_by_name(_kinds("starts")), {}),
-        estimators=(_by_name(estimator), ...),
-    )
+    estimator = _filled(Estimator, _optional("recovery", "problem", "start", "filter"))
+    named = {role: _by_name(_kinds(role)) for role in ("observers", "sensors", "starts")}
+    alone = _optional("target", "orbit", "motion", "measured")
+    return _filled(base, alone | named | {"estimators": _by_name(estimator)})
 
 
 @cache
 def _measured_model(_: Any) -> Any:
+    return _filled(Measured, {"measured": _kinds("measured")})
+
+
+def _filled(base: type[Keys], kinds: dict[str, Any]) -> Any:
+    """Return a model with what some of its keys may hold, which say the same and default so."""
+    places = {name: (value, base.model_fields[name]) for name, value in kinds.items()}
     create: Any = create_model
-    return create("Measured", __base__=Measured, measured=(_kinds("measured"), ...))
+    return create(base.__name__, __base__=base, __doc__=base.__doc__, **places)
+
+
+def _optional(*roles: str) -> dict[str, Any]:
+    return {role: _kinds(role) | None for role in roles}
 
 
 def _by_name(value: Any) -> Any:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator
 
+from debrisest.errors import meant
 from debrisest.roles import Window
 
 _NUMBER = r"(\d+(?:\.\d+)?)"
@@ -24,9 +25,18 @@ def window_of(text: str, duration: float) -> Window:
     if match is None or float(match[1]) >= float(match[2]):
         raise ValueError(
             "a window is 'start', 'end', an instant such as '50 s' or a span such as "
-            f"'900-1400 s', not {text!r}"
+            f"'900-1400 s', not {text!r}{_meant(text)}"
         )
     return (float(match[1]), float(match[2]))
+
+
+def _meant(text: str) -> str:
+    """Return a question after the window that is written nearly like this, or nothing."""
+    numbers = re.findall(_NUMBER, text)
+    span = f"{'-'.join(numbers)} s"
+    if len(numbers) == 1 or (len(numbers) == 2 and float(numbers[0]) < float(numbers[1])):
+        return f" (did you mean {span}?)"
+    return meant(text.lower(), ["start", "end"])
 
 
 def _known_window(text: str) -> str:

@@ -72,8 +72,9 @@ def extended(
     itself once its step from x_i to x_i+1 is short:
 
     * `"scaled"`: each error component below `tolerance` of its posterior sigma;
-    * `"relative_norm"`: |x_i+1 - x_i| / |x_i+1| below `tolerance`, the rule of Pesce et al. (2017).
-      Their 0.01 "percentage variation" is 1e-4 here; with 1e-2 a distant target is never iterated.
+    * `"relative_norm"`: ``|x_i+1 - x_i| / |x_i+1|`` below `tolerance`, the rule of Pesce et al.
+      (2017). Their 0.01 "percentage variation" is 1e-4 here; with 1e-2 a distant target is never
+      iterated.
 
     The fixed point is the maximum of the posterior. Where errors are curved, P- is taken over from
     x- to x_i as it is, as any extended filter does from x- to its estimate.

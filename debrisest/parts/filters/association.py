@@ -34,10 +34,19 @@ class _Validating(FilterPart):
     takes = "scan_model"
     runs_together = 200
     gate: Positive = 9.21
+    """Largest squared distance of a detection from the predicted one, in sigmas; of two components,
+    9.21 lets 99 % pass, 5 lets 92 % pass."""
     detection_probability: Probability = 0.99
+    """Probability that a target gives a detection in a sensor's scan."""
     gate_probability: Probability | None = None
+    """Probability that the target's detection is within the gate; by default what chi-square
+    says."""
     gate_volume: Literal["unit_ball", "inverse_unit_ball"] = "unit_ball"
+    """Volume by which the clutter in the gate is spread, for the weight of "none of them is the
+    target's": the unit ball's, or its inverse, a misprint of Li et al. that weighs 10 times as
+    much."""
     stacked: bool = False
+    """All sensors update with one gain, instead of one after the other."""
     keep_s: KeptTimes = []
 
     @property
@@ -52,8 +61,13 @@ class AssociationFilter(_Validating):
 
     kind: Literal["association"]
     method: Literal["probabilistic", "nearest"] = "probabilistic"
+    """Use each detection within the gate with its probability to be the target's, or the nearest as
+    if it were certain."""
     linearised: Literal["estimate", "start", "truth"] = "estimate"
+    """About what it is linearised: the prediction; the start, propagated and never corrected; the
+    truth (nothing that one could use)."""
     relinearised_s: Positive | None = None
+    """With `linearised: start`, move to the estimate every so often."""
 
     @property
     def uses_truth(self) -> bool:

@@ -24,6 +24,9 @@ class Batch(FilterPart):
     makes_start = True
     kind: Literal["batch"]
     online: bool = False
+    """Every epoch is estimated from what was measured up to it: the batch is run again every 10 s,
+    later every tenth of the time so far, and the motion predicted in between. Nothing is known
+    before the first run. Status and figures per run are those of all data. Needs known geometry."""
     keep_s: KeptTimes = []
 
     def run(self, model: MotionModel, given: Given) -> Estimates:

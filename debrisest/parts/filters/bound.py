@@ -32,6 +32,7 @@ class Efficient(FilterPart):
     needs_truth = True
     kind: Literal["efficient"]
     smoother: bool = False
+    """Bound of the smoother."""
     keep_s: KeptTimes = []
 
     def run(self, model: ReplayModel, given: Given) -> Estimates:

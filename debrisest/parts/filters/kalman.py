@@ -15,7 +15,10 @@ from debrisest.roles import FilterPart, Given, NonNegative, Positive
 
 KeptTimes = Annotated[
     list[NonNegative],
-    Field(description="times whose covariance is kept, beside the last epoch's"),
+    Field(
+        description="Times, up to the scenario's end; the epochs nearest to them keep their "
+        "covariance, beside the last. `nees` and `w` need them."
+    ),
 ]
 
 
@@ -32,9 +35,14 @@ class Unscented(FilterPart):
     runs_together = 100
     kind: Literal["unscented"]
     alpha: Positive = 1.0
+    """Spread of the sigma points."""
     beta: float = 2.0
+    """Weight of the central point in the covariance; 2 suits a Gaussian."""
     kappa: float = 0.0
+    """Second spread."""
     redraw: bool = True
+    """Draw new sigma points from the predicted covariance before the update; without, the
+    innovation covariance lacks the process noise, as in Biondi et al."""
     keep_s: KeptTimes = []
 
     def run(self, model: Model, given: Given) -> Estimates:
@@ -60,9 +68,14 @@ class Extended(FilterPart):
     runs_together = 100
     kind: Literal["extended"]
     iterations: Annotated[int, Field(ge=1)] = 1
+    """Most iterations of an update."""
     tolerance: Positive = 1e-2
+    """A step below it ends the update."""
     stop: Literal["relative_norm", "scaled"] = "scaled"
+    """How a step is measured: by the norm of the state, or each error by its posterior sigma."""
     gate: bool = False
+    """Leave out measurements that are too unlikely; a gate that locks everything out is opened
+    again."""
     keep_s: KeptTimes = []
 
     def run(self, model: Model, given: Given) -> Estimates:

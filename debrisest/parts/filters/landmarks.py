@@ -28,7 +28,9 @@ class _LandmarkFilter(FilterPart):
     version = 3
     takes = "landmark_model"
     iterations: Annotated[int, Field(ge=1)] = 3
+    """Linearisations of a frame at most."""
     gate: bool = True
+    """Reject points and ranges with a probability below 0.1 % (13.8 for two pixels)."""
     keep_s: KeptTimes = []
 
     def _settings(self) -> UpdateSettings:
@@ -44,11 +46,17 @@ class LandmarkBatch(_LandmarkFilter):
 
     kind: Literal["landmark_batch"]
     windows_s: list[Positive] = [50.0, 100.0, 200.0, 350.0, 600.0]
+    """Lengths of the windows."""
     spacing_s: list[Positive] = [5.0, 5.0, 5.0, 10.0, 5.0]
+    """Time between the frames used in each; at least five frames a window."""
     batch_iterations: Annotated[int, Field(ge=1)] = 15
+    """Linearisations in a window; three times as many in the last one."""
     restarts: Annotated[int, Field(ge=0)] = 4
+    """Other first guesses to try at most."""
     mirrored: bool = True
+    """Try the mirror too."""
     false_matches: bool = False
+    """Cauchy's loss, which lets go of false matches."""
 
     @model_validator(mode="after")
     def _windows(self) -> "LandmarkBatch":
@@ -112,8 +120,10 @@ class LandmarkFilter(_LandmarkFilter):
     """The iterated filter from the first frame on: free gauge, noise annealed."""
 
     kind: Literal["landmark_filter"]
-    annealing: NonNegative = Field(100.0, description="noise variance times 1 + this at time zero")
-    annealing_s: Positive = Field(100.0, description="time in which that falls by a factor e")
+    annealing: NonNegative = 100.0
+    """The variance of the noise is multiplied by 1 + this at time zero."""
+    annealing_s: Positive = 100.0
+    """Time in which that falls by a factor e."""
 
     def run(self, model: LandmarkModel, given: Given) -> Estimates:
         """Return the estimates of all epochs."""

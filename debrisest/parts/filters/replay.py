@@ -21,8 +21,12 @@ class Replay(FilterPart):
     takes = "replay_model"
     kind: Literal["replay"]
     smoother: bool = False
+    """Estimate from all measurements, later ones too."""
     gate: bool = False
+    """Leave out measurements that are too unlikely; what was rejected is judged again at each
+    replay."""
     ratio: Annotated[float, Field(ge=1)] = RATIO
+    """Ratio of the times of successive replays; 1 replays at each epoch."""
     keep_s: KeptTimes = []
 
     def run(self, model: ReplayModel, given: Given) -> Estimates:

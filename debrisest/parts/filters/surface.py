@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Data
 from debrisest.filters.estimates import Estimates
@@ -41,7 +40,9 @@ class Surface(FilterPart):
     makes_start = True
     libraries = ("cv2", "pycolmap", "skimage")
     kind: Literal["surface"]
-    method: Method = Field("fusion", description="; ".join(_METHODS.values()))
+    method: Method = "fusion"
+    """Silhouettes fused with depth, which closes whatever is seen and keeps thin panels, or the
+    screened Poisson surface of the dense cloud, for compact bodies."""
 
     def run(self, model: ShapeModel, given: Given) -> Estimates:
         """Return volume, centre and inertia of density one, the same at all epochs, and meshes."""

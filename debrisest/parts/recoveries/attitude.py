@@ -35,6 +35,8 @@ class AttitudeRecovery(RecoveryPart):
     finished: ClassVar[Outcome]
     """How the solver ends where nothing stops it early."""
     attitude: Literal["triad", "wahba"]
+    """Attitude of an epoch: from the first three visible features that are not in line, or least
+    squares of all visible ones."""
 
     @abstractmethod
     def recover_attitude(self, matrix: Array, raw: Array, piece: IntArray, data: Data) -> Data:

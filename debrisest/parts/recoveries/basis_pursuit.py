@@ -22,18 +22,29 @@ class SignSearch(Keys):
     """How the signs of the pieces are found: a beam over hypotheses, on the scalar part."""
 
     score: Literal["lasso", "sparsity"] = "lasso"
-    count_weight: NonNegative = Field(1.0, description="weight of |c|_0 in the score sparsity")
-    modulus_weight: NonNegative = Field(10.0, description="weight of |c|_1 in the score sparsity")
-    threshold: Positive = Field(0.01, description="modulus from which a coefficient counts")
+    """What the believed hypothesis has the least of: the lasso objective, or `count_weight` times
+    the number of non-zero coefficients plus `modulus_weight` times their 1-norm."""
+    count_weight: NonNegative = 1.0
+    """Weight of the number of non-zero coefficients in the score `sparsity`."""
+    modulus_weight: NonNegative = 10.0
+    """Weight of the coefficients' 1-norm in the score `sparsity`."""
+    threshold: Positive = 0.01
+    """Modulus from which a coefficient counts as non-zero (`sparsity`)."""
     first_pieces: Annotated[int, Field(ge=1, le=12)] = 5
+    """Pieces of which all signs are tried."""
     beam: Count = 2
+    """Hypotheses that are kept."""
     first_iterations: Count = 60
+    """Iterations for the first pieces."""
     iterations: Count = 8
-    splitting: Positive = Field(0.1, description="as of the recovery, for the hypotheses")
+    """Iterations for each further piece."""
+    splitting: Positive = 0.1
+    """As of the recovery, for the hypotheses: the augmented Lagrangian's parameter."""
     relaxation: Annotated[float, Field(gt=0, lt=2)] = 1.6
-    keep_hypotheses: bool = Field(
-        False, description="keep what is tried for the first pieces and the next one, for figures"
-    )
+    """As of the recovery, for the hypotheses: 1 is the plain iteration."""
+    keep_hypotheses: bool = False
+    """Keep signs, penalties and signals that are tried for the first pieces and for the next one;
+    `plot` draws them."""
 
     def scorer(self) -> Callable[[Recovered], Array]:
         """Return the penalty of a hypothesis, the lower the better."""
@@ -50,9 +61,9 @@ class BasisPursuit(PursuitKeys, AttitudeRecovery):
     finished = RecoveryStatus.CONVERGED
     kind: Literal["basis_pursuit"]
     signs: SignSearch = SignSearch()
-    exact_recovery: bool = Field(
-        False, description="compute the exact recovery coefficient of the scalar part's lines"
-    )
+    """Search of the signs of the pieces."""
+    exact_recovery: bool = False
+    """Compute the exact recovery coefficient of the scalar part's lines, which takes a while."""
 
     def recover_attitude(self, matrix: Array, raw: Array, piece: IntArray, data: Data) -> Data:
         """Return the quaternion's components, recovered with the signs that were found."""

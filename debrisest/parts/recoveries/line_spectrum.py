@@ -19,9 +19,10 @@ class LineSpectrumRecovery(AttitudeRecovery):
     finished = LineStatus.COMPLETE
     kind: Literal["line_spectrum"]
     most_lines: Annotated[int, Field(ge=1)] = 30
-    weights: Literal["points", "equal"] = Field(
-        "points", description="of the epochs: what the visible points tell, or all the same"
-    )
+    """Largest number of lines."""
+    weights: Literal["points", "equal"] = "points"
+    """Weights of the epochs: inversely as the variance of a least-squares attitude of the features
+    seen, or all the same."""
 
     def recover_attitude(self, matrix: Array, raw: Array, piece: IntArray, data: Data) -> Data:
         """Return the rotations nearest to the recovered entries, and the signs that they give."""

@@ -16,15 +16,22 @@ Count = Annotated[int, Field(ge=1)]
 class PursuitKeys(Keys):
     """How a lasso on a Fourier dictionary is posed and solved."""
 
-    dictionary_ratio: Annotated[float, Field(ge=1)] = Field(
-        2.0, description="atoms per sample; 1 is the plain transform"
-    )
-    penalty: Positive = Field(description="lambda of the lasso")
-    joint: bool = Field(False, description="whether the components share their lines")
-    splitting: Positive = Field(0.1, description="mu of the augmented Lagrangian, over the atoms")
+    dictionary_ratio: Annotated[float, Field(ge=1)] = 2.0
+    """Atoms per sample; 1 is the plain transform. Direction cosines have more lines than the
+    quaternion: 4 is better."""
+    penalty: Positive
+    """Weight of the 1-norm in the lasso."""
+    joint: bool = False
+    """Whether the components share their lines: a line counts with the root of the sum of squares
+    over the components; wants a penalty about twice as large."""
+    splitting: Positive = 0.1
+    """Parameter of the augmented Lagrangian, over the number of atoms."""
     iterations: Count = 300
+    """Most iterations."""
     relaxation: Annotated[float, Field(gt=0, lt=2)] = 1.6
+    """Over-relaxation; 1 is the plain iteration."""
     tolerance: NonNegative = 1e-3
+    """Relative change at which the solver stops; 0: never."""
 
     def pursue(self, signal: Array) -> Recovered:
         """Return the recovery (run, component, time) of a signal (run, time, component)."""

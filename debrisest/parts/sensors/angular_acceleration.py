@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Data
 from debrisest.attitude import quaternion
@@ -22,7 +21,9 @@ class AngularAcceleration(SimulationPart):
     measures = ("measured_angular_acceleration",)
     kind: Literal["angular_acceleration"]
     noise_rad_s2: Positive
-    from_s: NonNegative = Field(1.0, description="time of the first measurement")
+    """Standard deviation per axis."""
+    from_s: NonNegative = 1.0
+    """Time of the first measurement."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the angular acceleration (run, time, 3) and its known noise."""

@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Data
 from debrisest.attitude import quaternion
@@ -18,7 +17,8 @@ class AttitudeKnowledge(SimulationPart):
     needs = ("true_q_ic",)
     knows = ("known_q_ic", "start_attitude_bias")
     kind: Literal["attitude_knowledge"]
-    bias_mrad: NonNegative = Field(0.0, description="1 sigma per axis of each camera, per run")
+    bias_mrad: NonNegative = 0.0
+    """Standard deviation of the error about each camera axis."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return ``known_q_ic`` (run, time, observer, 4); the bias is in camera axes."""

@@ -23,8 +23,11 @@ class AttitudeSensor(SimulationPart):
     measures = ("measured_q_if", "q_if_noise")
     kind: Literal["attitude_sensor"]
     noise_deg: Positive
+    """Standard deviation of the turn about each inertial axis that is its error."""
     missing_share: Annotated[float, Field(ge=0, le=1)] = 0.0
+    """Share of the epochs without an attitude."""
     wild_share: Annotated[float, Field(ge=0, le=1)] = 0.0
+    """Share of the attitudes that have nothing to do with the body's."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the attitudes (run, time, 4), NaN where one is missing, and their noise."""

@@ -45,19 +45,37 @@ class CameraRange(SimulationPart):
     version = 2
     kind: Literal["camera_range"]
     focal_px: Positive = 1000.0
+    """Focal length in pixels."""
     pixel_noise_px: Positive = 1.0
+    """Standard deviation of each coordinate."""
     whole_pixels: bool = True
+    """Round to whole pixels; estimators reckon with 1/12 px² more."""
     range_noise_m: Positive = 0.01
+    """Standard deviation of both ranges."""
     range_to: Literal["centre", "surface"] = "centre"
-    half_sides_m: HalfSides | None = Field(None, description="of the body, a box")
-    half_size_px: HalfSize | None = Field(None, description="half the width and the height")
-    dark_s: list[Limits[NonNegative]] = Field([], description="eclipses: no pixels from, to before")
+    """What the range is measured to: the centre of mass, or the surface on the line to it."""
+    half_sides_m: HalfSides | None = None
+    """The body as a box, for `surface` and `box`; without it the surface is the hull of the
+    points."""
+    half_size_px: HalfSize | None = None
+    """Half the width and half the height of the image, in which a pixel must lie; none: no
+    limits."""
+    dark_s: list[Limits[NonNegative]] = []
+    """Eclipses: from when until before when the camera shows nothing; the range finder goes on."""
     visibility: Literal["all", "back_face", "box"] = "all"
+    """Which points are seen: all, those whose normal faces the chaser, or those that the box does
+    not hide."""
     missing_share: Share = 0.0
+    """Probability that a visible point is not found in an image."""
     false_match_share: Share = 0.0
+    """Probability that a pixel is a false match."""
     false_match_px: Positive = 200.0
+    """False matches lie anywhere in a square of this half side."""
     attitude_noise_deg: NonNegative = 0.0
+    """White noise of the camera's known attitude, about each of its axes; the estimators are told
+    it."""
     attitude_bias_deg: NonNegative = 0.0
+    """Standard deviation of a constant error of the camera's known attitude, drawn for each run."""
 
     @model_validator(mode="after")
     def _has_a_body(self) -> "CameraRange":

@@ -21,7 +21,9 @@ class Clutter(Keys):
     """Points that are new in every frame, spread evenly over a square about the debris' pixel."""
 
     count: Count
+    """Points in each camera and frame."""
     half_width_px: Positive
+    """Half the edge of the square."""
 
 
 MOST_COMPANIONS = 7
@@ -34,11 +36,17 @@ class Companions(Keys):
     """Pieces that fly beside the debris for good, and what is known of them at time zero."""
 
     count: Count
-    spread_km: Positive = Field(description="1 sigma per axis of the distance from the debris")
-    relative_speed_m_s: NonNegative = Field(10.0, description="1 sigma per axis")
-    j2: bool = Field(False, description="the Earth's oblateness, as in the debris' orbit")
-    position_sigma_m: Positive = Field(1e4, description="of the first guess")
-    velocity_sigma_m_s: Positive = Field(100.0, description="of the first guess")
+    """Pieces; with the debris eight tracks at most."""
+    spread_km: Positive
+    """Standard deviation per axis of their distance from the debris."""
+    relative_speed_m_s: NonNegative = 10.0
+    """Standard deviation per axis of their velocity from the debris'."""
+    j2: bool = False
+    """The Earth's oblateness acts on them; as in the debris' orbit."""
+    position_sigma_m: Positive = 1e4
+    """Standard deviation of the first guess of their positions."""
+    velocity_sigma_m_s: Positive = 100.0
+    """Standard deviation of the first guess of their velocities."""
 
     @field_validator("count")
     @classmethod
@@ -64,10 +72,15 @@ class Detections(SimulationPart):
     tried = True
     kind: Literal["detections"]
     pixel_noise_px: NonNegative = 1.0
+    """Standard deviation of each coordinate, before rounding."""
     whole_pixels: bool = True
+    """Round to whole pixels."""
     missing_share: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    """Probability that the debris, and each companion, is not found in a frame."""
     clutter: Clutter | None = None
+    """Points that are new in each frame, spread evenly over a square about the debris' pixel."""
     companions: Companions | None = None
+    """Pieces that fly beside the debris for good."""
 
     @property
     def given(self) -> tuple[str, ...]:

@@ -18,7 +18,9 @@ class BiasedFeature(Keys):
     """A feature that is not where the estimators know it."""
 
     name: str
+    """The feature."""
     by_m: Positive
+    """How far it is off, in a direction of each run's own."""
 
 
 def _value_or_limits(given: object) -> str:
@@ -36,22 +38,31 @@ class FeaturePoints(SimulationPart):
     noise_m: Annotated[
         Annotated[NonNegative, Tag("value")] | Annotated[Limits[Positive], Tag("limits")],
         Discriminator(_value_or_limits),
-    ] = Field(description="one value, or limits of a draw")
-    depth_noise_factor: Positive = Field(
-        1.0, description="noise along the line of sight over that across; told is the RMS of all"
-    )
-    attitude_noise_deg: NonNegative = Field(
-        0.0, description="white noise of the chaser's attitude per axis, which nobody is told"
-    )
+    ]
+    """Standard deviation of each coordinate; between two limits it is drawn for each run, evenly in
+    its logarithm, and told."""
+    depth_noise_factor: Positive = 1.0
+    """Noise along the line of sight over that across; the estimators are told the root mean square
+    of the three axes."""
+    attitude_noise_deg: NonNegative = 0.0
+    """White noise of the chaser's attitude about each of its axes, by which all points of an epoch
+    turn about the chaser; the estimators are not told."""
     visibility: Literal["back_face", "all"] = "back_face"
+    """Which features are seen: those whose surface faces the chaser, or all."""
     missing_share: Annotated[float, Field(ge=0, lt=1)] = 0.0
-    outages_s: list[Limits[NonNegative]] = Field([], description="from, and to before which")
+    """Share of the points that drop out, each by itself."""
+    outages_s: list[Limits[NonNegative]] = []
+    """From when until before when nothing is seen."""
     wrong_match_share: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    """Share of the points that are wrong: half of them are off by 1 to 5 m, half exchanged with the
+    next feature."""
     biased_feature: BiasedFeature | None = None
-    feature_error_m: NonNegative = Field(
-        0.0, description="of the known place of every feature per axis, drawn for each run"
-    )
-    seen_for_s: Limits[Positive] | None = Field(default=None, description="lower and upper limit")
+    """A feature that is elsewhere than the estimators know it."""
+    feature_error_m: NonNegative = 0.0
+    """Standard deviation per axis of the known places of all features, drawn for each run; the
+    estimators are not told."""
+    seen_for_s: Limits[Positive] | None = None
+    """Limits of the time after which nothing is seen any more, drawn evenly for each run."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the points (run, time, feature, 3), NaN where one is hidden, and their noise."""

@@ -40,21 +40,32 @@ class Images(SimulationPart):
     libraries = ("cv2", "embreex")
     kind: Literal["images"]
     width_px: Size = 640
+    """Columns."""
     height_px: Size = 480
+    """Rows."""
     focal_px: Positive
-    baseline_m: Positive | None = Field(None, description="to a second camera; none: one camera")
-    distortion: Annotated[list[float], Field(min_length=5, max_length=5)] = Field(
-        [0.0] * 5, description="k1, k2, p1, p2, k3"
-    )
-    sun: Vector3 = Field([-0.5, -0.6, -0.6], description="direction towards it, camera axes")
+    """Focal length in pixels; the principal point is the middle."""
+    baseline_m: Positive | None = None
+    """Distance of the second camera, to the right; without it there is one."""
+    distortion: Annotated[list[float], Field(min_length=5, max_length=5)] = [0.0] * 5
+    """Coefficients k1, k2, p1, p2, k3 of both lenses, as OpenCV has them."""
+    sun: Vector3 = [-0.5, -0.6, -0.6]
+    """Direction towards the sun, camera axes."""
     ambient: Annotated[float, Field(ge=0, le=1)] = 0.12
-    noise_grey: NonNegative = Field(1.5, description="of a pixel, in levels of 256")
-    blur_px: NonNegative = Field(0.5, description="sigma of the lens")
+    """Share of the light that comes from everywhere."""
+    noise_grey: NonNegative = 1.5
+    """Standard deviation of a pixel, of 256 grey levels."""
+    blur_px: NonNegative = 0.5
+    """Sigma of the lens."""
     exposure_s: NonNegative = 0.0
+    """Exposure about the time of the image, in which the body turns."""
     background: Literal["black", "room"] = "black"
-    room_m: Positive = Field(60.0, description="half a side of the room about the first camera")
+    """What is behind the body: nothing, or patterned walls that do not turn."""
+    room_m: Positive = 60.0
+    """Half a side of the room about the first camera."""
 
-    video: bool = Field(False, description="let the images pass through a compressed video file")
+    video: bool = False
+    """Let the images pass through a compressed video file."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return images (run, time, camera, row, column) and what is known of the cameras."""

@@ -20,7 +20,9 @@ class PinholeCamera(SimulationPart):
     knows = ("focal_px", "image_half_size")
     kind: Literal["pinhole_camera"]
     focal_px: Positive
-    half_size_px: HalfSize = Field(description="half the width and the height of the image")
+    """Focal length in pixels."""
+    half_size_px: HalfSize
+    """Half the width and half the height of the image."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return focal length (run,) and half size (run, 2)."""

@@ -62,36 +62,58 @@ class PointingControl(SimulationPart):
     knows = ("section", "control_time_s", "torque")
     kind: Literal["pointing_control"]
     inertia_kg_m2: Tensor
-    satellites: dict[str, OwnSatellite] = Field({}, description="what differs, by observer")
-    inertia_error: NonNegative = Field(
-        0.0, description="of the real second moments of mass, drawn for each run and satellite"
-    )
-    torque_error: NonNegative = Field(
-        0.0, description="of the share of each torque that acts, drawn likewise"
-    )
-    axes: Axes = Field("repaired", description="local orbital axes that angles count from")
+    """Inertia tensor, body axes."""
+    satellites: dict[str, OwnSatellite] = {}
+    """What a satellite has of its own, by observer."""
+    inertia_error: NonNegative = 0.0
+    """Standard deviation of the logarithm of the real second moments of mass over the model's,
+    along each axis, drawn for each run and satellite."""
+    torque_error: NonNegative = 0.0
+    """Standard deviation of the logarithm of the share of each torque component that acts, drawn
+    likewise."""
+    axes: Axes = "repaired"
+    """Local orbital axes: transverse, orbit normal, radial; or radial, transverse, normal, with
+    which the debris of Li et al. is behind the cameras: then there is no control, and
+    `pointing_status`, which tells of whole epochs, says so."""
     robust_term: Reading = "literal"
-    margin_px: NonNegative = Field(2.5, description="from the edge, where turning starts")
-    control_step_s: Positive = Field(0.02, description="at most; a step has a whole number of them")
-    torque_limit_n_m: Positive | None = Field(None, description="of each axis")
-    anti_windup: bool = Field(True, description="integrals stand still at the torque limit")
-    angle_error: NonNegative = Field(0.05, description="share of the measured Euler angles")
-    rate_error: NonNegative = Field(0.05, description="share of the measured rates")
+    """Reading of the law's robust term: as printed; the same with an integral that, in the first
+    stage, grows only near the goal; with the sign of the sliding surface and a linear stretch;
+    without that stretch, which chatters; feedback linearisation alone."""
+    margin_px: NonNegative = 2.5
+    """How near to an edge the debris may come."""
+    control_step_s: Positive = 0.02
+    """Control step, at most; `step_s` has a whole number of them, 1 to 10000."""
+    torque_limit_n_m: Positive | None = None
+    """Largest torque about each axis."""
+    anti_windup: bool = True
+    """Integrals stand still while the torque is at its limit."""
+    angle_error: NonNegative = 0.05
+    """Share by which measured Euler angles are wrong."""
+    rate_error: NonNegative = 0.05
+    """Share by which measured rates are wrong."""
     errors: Literal["constant", "white"] = "constant"
+    """Kind of these errors: the same share always, or a standard deviation, drawn at each control
+    step."""
     whole_pixels: bool = True
+    """The controller sees whole pixels."""
     orbital_rate: Literal["ignored", "counted"] = "ignored"
-    held_in: Frozen = Field("local", description="axes in which cameras stand still meanwhile")
-    drift_error: NonNegative = Field(
-        _UNCERTAINTY.drift, description="share of the state function that is wrong"
-    )
-    gain_error: Annotated[float, Field(ge=0, lt=1)] = Field(
-        _UNCERTAINTY.gain, description="share of the input matrix that is wrong"
-    )
+    """Whether the local axes' turning moves the spacecraft in them."""
+    held_in: Frozen = "local"
+    """Axes in which the attitude stands still in estimation sections."""
+    drift_error: NonNegative = _UNCERTAINTY.drift
+    """Share of the state function that the robust term covers."""
+    gain_error: Annotated[float, Field(ge=0, lt=1)] = _UNCERTAINTY.gain
+    """Share of the input matrix that it covers."""
     tracking: Tracking = Tracking()
+    """Gains of the first stage, for two pixels and three rates."""
     holding: Holding = Holding()
+    """Gains of the second stage, for three angles."""
     desired_px: Annotated[list[float], Field(min_length=2, max_length=2)] = [0.0, 0.0]
+    """Pixel that the debris is brought to, from the middle."""
     switching: Switching = Switching()
-    store_every: Annotated[int, Field(ge=1)] = Field(25, description="control steps")
+    """When one stage changes to the next."""
+    store_every: Annotated[int, Field(ge=1)] = 25
+    """Control steps from one stored torque to the next."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude, sections, exact pixels, and what the controller did.

@@ -30,36 +30,52 @@ class OwnSatellite(Keys):
     """What one satellite has of its own."""
 
     inertia_kg_m2: Tensor | None = None
-    angles_deg: Vector3 = Field([0.0, 0.0, 0.0], description="Euler angles 3-2-1 at the start")
+    """Inertia tensor, body axes, instead of the common one."""
+    angles_deg: Vector3 = [0.0, 0.0, 0.0]
+    """Euler angles 3-2-1 at the start."""
 
 
 class Tracking(Keys):
     """Gains of the first stage: two pixels, three rates."""
 
     proportional: _Five = pixel_tracking.GAINS.proportional.tolist()
+    """Gain of the error and of its integral."""
     damping: _Pair = pixel_tracking.GAINS.damping.tolist()
+    """Gain of the pixel's rate."""
     robustness: _Five = pixel_tracking.GAINS.robustness.tolist()
+    """Gain of the sliding surface."""
     boundary: _Five = pixel_tracking.GAINS.boundary.tolist()
+    """Half the linear stretch of `saturated`."""
 
 
 class Holding(Keys):
     """Gains of the second stage: three Euler angles."""
 
     proportional: _Triple = attitude_hold.GAINS.proportional.tolist()
+    """Gain of the error and of its integral."""
     damping: _Triple = attitude_hold.GAINS.damping.tolist()
+    """Gain of the angles' rate."""
     robustness: _Triple = attitude_hold.GAINS.robustness.tolist()
+    """Gain of the sliding surface."""
     boundary: _Triple = attitude_hold.GAINS.boundary.tolist()
+    """Half the linear stretch of `saturated`."""
 
 
 class Switching(Keys):
     """When the first stage has done its work, and how long the second lasts."""
 
     pixel_px: Positive = _SWITCH.pixel
+    """The pixel is small below that."""
     rate_rad_s: Positive = _SWITCH.rate
+    """The rate is small below that."""
     calm_s: NonNegative = _SWITCH.calm
+    """The first stage ends after pixel and rate were small so long."""
     least_s: NonNegative = _SWITCH.least
+    """The first stage does not end before."""
     most_s: Positive = _SWITCH.most
+    """The first stage ends at the latest then; from `least_s`."""
     hold_s: NonNegative = _SWITCH.hold
+    """Length of the second stage."""
 
     @model_validator(mode="after")
     def _least_below_most(self) -> Self:

@@ -29,15 +29,26 @@ class StereoCamera(SimulationPart):
     measures = ("measured_pixel", "measured_flow", "measured_disparity")
     kind: Literal["stereo_camera"]
     baseline_m: Positive
+    """Distance between the cameras."""
     focal_px: Positive = 1.0
+    """Focal length in pixels; with 1 pixels are slopes."""
     pixel_noise_px: Positive | None = None
+    """Standard deviation of each coordinate."""
     flow_noise_px_s: Positive | None = None
+    """Standard deviation of the flow."""
     disparity_noise_px: Positive | None = None
-    from_s: NonNegative = Field(1.0, description="time of the first measurement")
+    """Standard deviation of the disparity."""
+    from_s: NonNegative = 1.0
+    """Time of the first measurement."""
     missing_per_frame: Annotated[int, Field(ge=0)] = 0
+    """Features, drawn at each epoch, that are not seen."""
     visibility: Literal["all", "back_face"] = "all"
+    """Which features are seen: all, or those whose surface faces both cameras; that needs a target
+    with normals."""
     outlier_share: Annotated[float, Field(ge=0, le=1)] = 0.0
+    """Probability that a single value is an outlier."""
     outlier_sigmas: NonNegative = 100.0
+    """What an outlier adds or subtracts, in standard deviations."""
 
     @model_validator(mode="after")
     def _measures_something(self) -> "StereoCamera":

@@ -23,6 +23,7 @@ class Datasets(SourcePart):
 
     kind: Literal["datasets"]
     file: str
+    """HDF5 file, from the scenario's folder; runs that failed are left out."""
 
     @property
     def files(self) -> list[str]:

@@ -5,7 +5,6 @@ from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Array, Data
 from debrisest.errors import UserError
@@ -26,6 +25,7 @@ class FromFile(SourcePart):
     """One run from text files; the paths count from the scenario's folder."""
 
     file: str
+    """What was measured, from the scenario's folder."""
 
     @property
     def files(self) -> list[str]:
@@ -42,9 +42,13 @@ class FromFile(SourcePart):
 class FromFiles(FromFile):
     """What is measured by a chaser, whose attitude may be given."""
 
-    attitude: str | None = Field(None, description="the chaser's attitude: time_s,q0,q1,q2,q3")
-    rate_hz: Positive | None = Field(None, description="of images that have no times")
-    image_times: str | None = Field(None, description="times of images: filename,time_s")
+    attitude: str | None = None
+    """The chaser's attitude, `time_s,q0,q1,q2,q3`; without it the axes measured in are taken for
+    inertial ones."""
+    rate_hz: Positive | None = None
+    """Frame rate of images that have no times."""
+    image_times: str | None = None
+    """Times of images that have none, CSV with `filename,time_s`."""
 
     @property
     def files(self) -> list[str]:

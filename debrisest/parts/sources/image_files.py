@@ -26,10 +26,14 @@ class MeasuredImages(SourcePart):
     )
     libraries = ("cv2",)
     kind: Literal["image_files"]
-    folder: str = Field(description="of images (left and right of a pair), or a video file")
-    camera: str = Field(description="calibration in OpenCV's YAML")
-    rate_hz: Positive | None = Field(None, description="of images that have no times")
-    every: int = Field(1, ge=1, description="take one image of so many")
+    folder: str
+    """A folder of images (of a pair: with `left` and `right` in it), or a video file."""
+    camera: str
+    """Calibration in OpenCV's YAML."""
+    rate_hz: Positive | None = None
+    """Frame rate of images that have no times; none: one each second."""
+    every: int = Field(1, ge=1)
+    """Take one image of so many."""
 
     def read(self, folder: Path) -> Data:
         """Return images with their times, and what is known of the cameras."""

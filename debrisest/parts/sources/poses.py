@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Data
 from debrisest.attitude import quaternion
@@ -20,7 +19,8 @@ class MeasuredPoses(FromFiles):
 
     gives = ("measured_q_if", "q_if_noise", "measured_position")
     kind: Literal["poses"]
-    sigma_deg: Positive | None = Field(None, description="of each axis, where the file has none")
+    sigma_deg: Positive | None = None
+    """Standard deviation about each axis, where the file has none."""
 
     def read(self, folder: Path) -> Data:
         """Return the poses of one run, in inertial axes if the chaser's attitude is given."""

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Data
 from debrisest.errors import UserError
@@ -19,7 +18,8 @@ class MeasuredRates(FromFile):
 
     gives = ("measured_rate_f", "rate_f_noise")
     kind: Literal["rates"]
-    sigma_deg_s: Positive | None = Field(None, description="of each axis, where the file has none")
+    sigma_deg_s: Positive | None = None
+    """Standard deviation about each axis, where the file has none."""
 
     def read(self, folder: Path) -> Data:
         """Return the rates of one run."""

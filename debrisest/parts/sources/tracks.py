@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
@@ -41,10 +40,14 @@ class MeasuredTracks(FromFiles):
         "measured_range", "landmark", "landmark_range",
     )  # fmt: skip
     kind: Literal["tracks"]
-    points: str | None = Field(None, description="known geometry: feature,x_m,y_m,z_m, body axes")
-    camera: str | list[str] | None = Field(None, description="calibration, in one or more files")
-    noise_m: Positive | None = Field(None, description="of a coordinate, where the file has none")
-    noise_px: Positive | None = Field(None, description="of a pixel's coordinate")
+    points: str | None = None
+    """Known geometry, `feature,x_m,y_m,z_m`, in body axes of your own."""
+    camera: str | list[str] | None = None
+    """Calibration, which pixels need; of a stereo pair in one or two files."""
+    noise_m: Positive | None = None
+    """Standard deviation of each coordinate, where the file has no sigma."""
+    noise_px: Positive | None = None
+    """Standard deviation of each coordinate of a pixel; none: it is taken from the residuals."""
 
     @property
     def files(self) -> list[str]:

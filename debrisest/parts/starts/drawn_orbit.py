@@ -15,7 +15,9 @@ class DrawnOrbit(SimulationPart):
     knows = ("start_orbit_position", "start_orbit_velocity")
     kind: Literal["drawn_orbit"]
     position_sigma_m: Positive
+    """Standard deviation per axis of the position."""
     velocity_sigma_m_s: Positive
+    """Standard deviation per axis of the velocity."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the drawn state and its known sigma."""

@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
@@ -24,14 +23,20 @@ class DrawnPose(SimulationPart):
     knows = tuple(f"start_{name}" for name in _NAMES)
     kind: Literal["drawn_pose"]
     position_sigma_m: Positive
+    """Standard deviation of the position, per axis."""
     velocity_sigma_m_s: Positive
+    """Standard deviation of the velocity, per axis."""
     rate_sigma_deg_s: Positive
-    q_sigma: Positive = Field(description="of every component; twice that is the angle's")
-    inertia_ratio_sigma: Positive | None = Field(description="null: another start gives the ratios")
+    """Standard deviation of the rate, per axis."""
+    q_sigma: Positive
+    """Standard deviation of each component of `q_lt`, which is then normalised; an angle's is twice
+    that."""
+    inertia_ratio_sigma: Positive | None
+    """Standard deviation of each inertia ratio; null: another start gives the ratios."""
     point_sigma_m: Positive
-    bodies_only: bool = Field(
-        False, description="draw inertia ratios again until they obey the triangle inequality"
-    )
+    """Standard deviation of the features, per axis."""
+    bodies_only: bool = False
+    """Draw inertia ratios again until no moment exceeds the sum of the others."""
 
     @property
     def given(self) -> tuple[str, ...]:

@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
@@ -31,13 +30,23 @@ class DrawnShape(SimulationPart):
         )
     )
     kind: Literal["drawn_shape"]
-    position_sigma_m: Positive = Field(2.0, description="the length is then the measured range")
-    velocity_sigma_m_s: Positive = Field(0.03, description="of the guess zero")
-    q_sigma: Positive = Field(1e-3, description="of each component; the guess is exact")
+    position_sigma_m: Positive = 2.0
+    """Standard deviation of each component of the chaser's position, which then gets the length of
+    the first range."""
+    velocity_sigma_m_s: Positive = 0.03
+    """Standard deviation of each component of the chaser's velocity, which is guessed to be
+    zero."""
+    q_sigma: Positive = 1e-3
+    """Standard deviation of each component of the attitude, which is exact by definition."""
     rate_sigma_deg_s: Positive = 0.3
+    """Standard deviation of each component of the rate."""
     inertia_sigma_kg_m2: Positive = 1.0
-    point_sigma_m: Positive = Field(0.3, description="across the line of sight")
+    """Standard deviation of each element of the inertia tensor."""
+    point_sigma_m: Positive = 0.3
+    """Standard deviation of the points, across the line of sight."""
     depth_sigma_m: Positive = 1.5
+    """Standard deviation of the points' depth, and all round for points that the first image
+    lacks."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the first guess and its sigma."""

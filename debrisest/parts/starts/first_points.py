@@ -24,7 +24,9 @@ class FirstPoints(StartPart):
     guesses = ("q_if", "rate_f", "log_inertia")
     kind: Literal["first_points"]
     samples: Annotated[int, Field(ge=2)] = 5
+    """The rate is the mean of one turn less than that."""
     variance: MotionVariances
+    """Variances of the start."""
 
     def start(self, data: Data, clock: Clock) -> tuple[Data, Data]:
         """Return the initial guess by name, NaN without an attitude, and its variance by name."""

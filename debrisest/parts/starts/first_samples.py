@@ -23,7 +23,9 @@ class FirstSamples(StartPart):
     guesses = ("q_ib", "q_bf", "rate_b", "moments_b")
     kind: Literal["first_samples"]
     samples: Annotated[int, Field(ge=2)] = 5
+    """Epochs of which the rate is taken."""
     variance: Variances
+    """Variances of the start."""
 
     def start(self, data: Data, clock: Clock) -> tuple[Data, Data]:
         """Return the initial guess by name, and its variance by name."""

@@ -5,11 +5,12 @@ from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import ValidationInfo, field_validator, model_validator
 
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
+from debrisest.errors import allowed_names
 from debrisest.roles import Keys, NonNegative, SimulationPart
 from debrisest.vocabulary import AXIS_LENGTH, VOCABULARY, possible_units, table_scale
 
@@ -21,8 +22,11 @@ class GuessedQuantity(Keys):
     """A value with its standard deviation, the same in all components or one for each."""
 
     value: Nested
+    """As many numbers as the quantity has, such as three, or a row of three for each feature."""
     sigma: NonNegative | list[NonNegative] | list[list[NonNegative]]
-    unit: str | None = Field(None, description="default: SI and radians")
+    """Standard deviation of each number, or one for all."""
+    unit: str | None = None
+    """`deg/s`, `deg` or `km` where it is not SI and radians."""
 
 
 class GivenGuess(SimulationPart):
@@ -30,10 +34,11 @@ class GivenGuess(SimulationPart):
 
     tried = True
     kind: Literal["given"]
-    quantities: dict[str, GuessedQuantity] = Field(
-        {}, description="name of an estimated quantity: value, sigma and unit"
-    )
-    file: str | None = Field(None, description="CSV with the columns name,component,value,sigma")
+    quantities: dict[str, GuessedQuantity] = {}
+    """What is guessed: a quantity is called as in the files of `simulate`, without `start_`."""
+    file: str | None = None
+    """CSV with the columns `name,component,value,sigma`, components counted from 1, rows of a list
+    of lists after each other; in SI and radians."""
 
     @model_validator(mode="before")
     @classmethod
@@ -80,10 +85,11 @@ def _require_fitting(name: str, quantity: GuessedQuantity) -> None:
     if declared is None:
         known = [other.removeprefix("start_") for other in VOCABULARY if other.startswith("start_")]
         allowed = [other for other in known if not other.endswith("_sigma")]
-        raise ValueError(f"no estimator starts from {name!r}; allowed: {', '.join(allowed)}")
+        raise ValueError(f"no estimator starts from {name!r}; {allowed_names(name, allowed)}")
     units = [unit for unit in possible_units(f"start_{name}") if unit]
     if quantity.unit is not None and quantity.unit not in units:
-        raise ValueError(f"{name} cannot be in {quantity.unit!r}; allowed: {', '.join(units)}")
+        said = allowed_names(quantity.unit, units)
+        raise ValueError(f"{name} cannot be in {quantity.unit!r}; {said}")
     axes = declared.axes[1:]
     lengths = [AXIS_LENGTH.get(axis) for axis in axes]
     shape = _shape(name, quantity.value)

@@ -35,7 +35,9 @@ class ClosedEllipse(SimulationPart):
     tried = True
     kind: Literal["closed_ellipse"]
     position_m: Annotated[Vector3, AfterValidator(_apart)]
+    """Position at time zero, Hill frame; not on the frame's third axis."""
     velocity_m_s: Vector3
+    """Velocity at time zero as seen in the rotating Hill frame."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the chaser's motion relative to the target, the same in every run."""

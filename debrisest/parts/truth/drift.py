@@ -23,7 +23,9 @@ class Drift(SimulationPart):
     frames = {"true_position": _RELATIVE, "true_velocity": _RELATIVE}
     kind: Literal["drift"]
     position_m: Vector3
+    """Position at time zero, Hill frame."""
     velocity_m_s: Vector3 = _ZERO
+    """Velocity at time zero as seen in the rotating Hill frame."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the target's position and velocity relative to the chaser, inertial axes."""

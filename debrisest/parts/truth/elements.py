@@ -16,11 +16,17 @@ class ClassicalElements(SimulationPart):
     """A part that flies an orbit, given by classical elements at time zero."""
 
     semi_major_axis_km: Positive
+    """Semi-major axis."""
     eccentricity: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    """Eccentricity."""
     inclination_deg: float = 0.0
+    """Inclination."""
     raan_deg: float = 0.0
+    """Right ascension of the ascending node."""
     argument_of_periapsis_deg: float = 0.0
+    """Argument of periapsis."""
     true_anomaly_deg: float = 0.0
+    """True anomaly."""
 
     @model_validator(mode="after")
     def _above_the_ground(self) -> "ClassicalElements":

@@ -21,7 +21,9 @@ class GravityGradient(SimulationPart):
     version = 2
     kind: Literal["gravity_gradient"]
     q_ib: UnitQuaternion = [1.0, 0.0, 0.0, 0.0]
+    """Attitude at time zero."""
     rate_deg_s: Vector3
+    """Rate at time zero, body axes."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude and rate of the body axes, the same in every run of the same body."""

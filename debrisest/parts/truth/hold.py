@@ -21,6 +21,7 @@ class Hold(SimulationPart):
     frames = {"true_position": _RELATIVE}
     kind: Literal["hold"]
     position_m: Vector3
+    """The chaser's position from the target, Hill frame."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the target's position relative to the chaser in inertial axes."""

@@ -2,8 +2,6 @@
 
 from typing import Literal
 
-from pydantic import Field
-
 from debrisest.arrays import Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
@@ -17,10 +15,11 @@ class PerturbedOrbit(ClassicalElements):
 
     knows = ("orbit_position", "orbit_velocity")
     kind: Literal["perturbed"]
-    j2: bool = Field(False, description="the Earth's oblateness")
-    acceleration_noise_m_s2: NonNegative = Field(
-        0.0, description="1 sigma per axis, constant from one epoch to the next"
-    )
+    j2: bool = False
+    """The Earth's oblateness."""
+    acceleration_noise_m_s2: NonNegative = 0.0
+    """Standard deviation per axis of an acceleration that is drawn anew for each step, in each
+    run."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return position and velocity in Earth-centred inertial axes."""

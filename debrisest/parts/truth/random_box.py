@@ -20,8 +20,11 @@ class RandomBox(SimulationPart):
     truths = ("true_point_b", "true_normal_b", "true_inertia_b")
     kind: Literal["random_box"]
     count: Annotated[int, Field(ge=3)]
-    half_side_m: Limits[Positive] = Field(description="lower and upper limit")
+    """Number of points."""
+    half_side_m: Limits[Positive]
+    """Limits of the half sides, each drawn evenly between them."""
     mass_kg: Positive = 500.0
+    """Mass; it only scales the inertia."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return points, normals and inertia of each run's box."""

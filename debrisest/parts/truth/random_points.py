@@ -37,8 +37,11 @@ class RandomPoints(SimulationPart):
     truths = ("true_point_b", "true_normal_b", "true_inertia_ratio", "true_inertia_b")
     kind: Literal["random_points"]
     count: Annotated[int, Field(ge=3)]
+    """Number of features."""
     half_size_m: Positive
-    inertia_ratios: InertiaRatios = Field(description="ln(Ix/Iy) and ln(Iy/Iz)")
+    """Half the edge of the cube."""
+    inertia_ratios: InertiaRatios
+    """Logarithms ln(Ix/Iy) and ln(Iy/Iz); no moment may exceed the sum of the others."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return points drawn for each run, their normals, and the inertia, scaled to Iy = 1."""

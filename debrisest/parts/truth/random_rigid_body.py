@@ -28,11 +28,16 @@ class RandomRigidBody(SimulationPart):
     truths = ("true_point_b", "true_normal_b", "true_inertia_b")
     knows = ("known_point_f",)
     kind: Literal["random_rigid_body"]
-    count: Limits[Annotated[int, Field(ge=3)]] = Field(description="lower and upper limit")
-    half_side_m: Limits[Positive] = Field(description="lower and upper limit")
+    count: Limits[Annotated[int, Field(ge=3)]]
+    """Limits of the number of points."""
+    half_side_m: Limits[Positive]
+    """Limits of the half sides of the box."""
     nearly_symmetric_share: Share = 0.2
+    """Share of the runs with a body that is nearly symmetric."""
     axisymmetric_share: Share = 0.15
+    """Share of the runs with two equal moments."""
     nearly_spherical_share: Share = 0.05
+    """Share of the runs with three almost equal moments."""
 
     @model_validator(mode="after")
     def _shares_of_a_whole(self) -> "RandomRigidBody":

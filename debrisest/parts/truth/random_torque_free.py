@@ -20,8 +20,10 @@ class RandomTorqueFree(SimulationPart):
     needs = ("true_inertia_b",)
     truths = ("true_q_ib", "true_rate_b")
     kind: Literal["random_torque_free"]
-    rate_deg_s: Limits[Positive] = Field(description="lower and upper limit, at time zero")
+    rate_deg_s: Limits[Positive]
+    """Limits of the rate at time zero."""
     spin_share: Annotated[float, Field(ge=0, le=1)] = 0.1
+    """Share of the runs that spin about a principal axis."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude and rate of the body axes of each run, in closed form."""

@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Data
 from debrisest.attitude import quaternion
@@ -20,7 +19,8 @@ class RandomTumble(SimulationPart):
     needs = ("true_inertia_b", "orbit_position", "orbit_velocity")
     truths = ("true_q_ib", "true_rate_b")
     kind: Literal["random_tumble"]
-    rate_deg_s: Limits[NonNegative] = Field(description="lower and upper limit, at time zero")
+    rate_deg_s: Limits[NonNegative]
+    """Limits of the rate at time zero."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude and rate of the body axes of each run."""

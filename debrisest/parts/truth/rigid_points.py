@@ -72,7 +72,9 @@ class Feature(Keys):
     """A recognisable point of the target and the outward normal of the surface there."""
 
     position_m: Vector3
+    """Place, from the centre of mass, body axes."""
     normal: Annotated[Vector3, AfterValidator(_direction)]
+    """Normal of the surface there, outward, of any length; not zero."""
 
 
 def _at_least_three(points: dict[str, Feature]) -> dict[str, Feature]:
@@ -91,10 +93,10 @@ class RigidPoints(SimulationPart):
     truths = ("true_point_b", "true_normal_b", "true_inertia_b", "true_inertia_ratio")
     knows = ("known_point_f",)
     kind: Literal["rigid_points"]
-    inertia_kg_m2: Inertia = Field(
-        description="three principal moments, or the rows of the tensor; scale is free"
-    )
+    inertia_kg_m2: Inertia
+    """Three moments about the body axes, or the rows of the tensor; its scale does not matter."""
     points: Annotated[dict[str, Feature], AfterValidator(_at_least_three)]
+    """Features by name, three or more."""
 
     @property
     def given(self) -> tuple[str, ...]:

@@ -3,7 +3,6 @@
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
@@ -17,7 +16,8 @@ class Satellite(ClassicalElements):
 
     knows = extends = ("observer", "observer_position", "observer_velocity")
     kind: Literal["satellite"]
-    j2: bool = Field(False, description="the Earth's oblateness")
+    j2: bool = False
+    """The Earth's oblateness."""
 
     def simulate_named(self, name: str, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return all observers so far, and this one, in Earth-centred inertial axes."""

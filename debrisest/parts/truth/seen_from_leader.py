@@ -27,9 +27,13 @@ class SeenFromLeader(SimulationPart):
     frames = {"true_position": _FRAME, "true_velocity": _FRAME}
     kind: Literal["seen_from_leader"]
     position_m: Vector3
+    """The target's position at time zero, leader's axes."""
     velocity_m_s: Vector3
+    """The target's velocity as seen in the leader's turning axes."""
     q_lt: UnitQuaternion = [1.0, 0.0, 0.0, 0.0]
+    """Attitude at time zero, target's principal axes to leader's axes."""
     rate_deg_s: Vector3
+    """Rate at time zero relative to the leader's axes, in these axes."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return position, velocity, attitude and rate relative to the leader."""

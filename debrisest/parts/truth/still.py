@@ -18,6 +18,7 @@ class Still(SimulationPart):
     frames = {"true_position": "inertial axes, origin at the chaser"}
     kind: Literal["still"]
     target_m: Vector3
+    """The target's centre of mass from the chaser, inertial axes."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the target's position relative to the chaser, the same at all times."""

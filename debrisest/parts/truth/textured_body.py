@@ -23,9 +23,14 @@ class TexturedBody(SimulationPart):
     )  # fmt: skip
     kind: Literal["textured_body"]
     name: Literal["h10", "panelled_satellite", "simulator", "box"]
+    """A rocket stage of 11.53 m x 2.66 m with a nozzle; a box with two panels 8 cm thick and a
+    dish; a laboratory's disc with boxes; a box of 2 m x 1.6 m x 1.2 m."""
     density_kg_m3: Positive = 1000.0
-    texture_m: Positive = Field(0.6, description="width of the pattern's largest spots")
+    """Density."""
+    texture_m: Positive = 0.6
+    """Width of the pattern's largest spots."""
     texture_seed: Annotated[int, Field(ge=0, lt=2**32)] = 1
+    """Which pattern."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return mesh, pattern, volume and inertia, the same in every run."""

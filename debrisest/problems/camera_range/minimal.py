@@ -7,7 +7,7 @@ and constants of the sensors where they are asked for.
 from typing import ClassVar, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
@@ -67,17 +67,32 @@ class CameraRangeMinimal(ProblemPart):
     version = 2
     kind: Literal["camera_range_minimal"]
     camera_attitude: CameraAttitude = "known"
+    """Attitude of the camera as it is told, or `implied`: the camera looks at the centre of mass
+    exactly, so that its attitude follows from the position."""
     range_to: RangeModel = "centre"
-    range_noise_m: Positive | None = Field(None, description="default: that of the sensor")
-    range_bias_m: float = Field(0.8, description="by which the surface is nearer than the centre")
+    """What the range is taken to be: that to the centre of mass, to a surface nearer by a constant
+    that is estimated, or to one of the points (`landmark_range`)."""
+    range_noise_m: Positive | None = None
+    """Standard deviation of the range; none: that of the sensor. A surface is not flat: take some
+    0.15 m with `bias`."""
+    range_bias_m: float = 0.8
+    """First guess of the constant by which the surface is nearer."""
     range_bias_sigma_m: Positive = 0.3
-    camera_bias_sigma_deg: NonNegative = Field(0.0, description="of the known attitude; 0: exact")
-    gauge_sigma_deg: NonNegative = Field(
-        0.0, description="of the attitude at time zero, for landmark_filter only"
-    )
+    """Standard deviation of that guess."""
+    camera_bias_sigma_deg: NonNegative = 0.0
+    """Standard deviation of a constant error of the known attitude about each axis, three of which
+    are estimated; 0: there is none; not with `implied`."""
+    gauge_sigma_deg: NonNegative = 0.0
+    """Standard deviation of the attitude at time zero, though it is exact by definition; for
+    `landmark_filter`, see there; `landmark_batch` and `landmark_bound` take the attitude as
+    exact."""
     log_inertia_sigma: Positive = 0.5
-    gravity_gradient: bool = Field(True, description="whether the Earth turns the target")
-    point_sigma_m: Positive = Field(1.5, description="of a point, also along the line of sight")
+    """Standard deviation of each log-ratio of the inertia."""
+    gravity_gradient: bool = True
+    """Whether the model has the gravity-gradient torque."""
+    point_sigma_m: Positive = 1.5
+    """Standard deviation of a point about the place where it is first put, at the depth of the
+    centre of mass."""
 
     @model_validator(mode="after")
     def _one_attitude(self) -> "CameraRangeMinimal":

@@ -3,7 +3,7 @@
 from typing import Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
@@ -24,14 +24,21 @@ class OrbitFromPixels(ProblemPart):
     start_needs = ("orbit_position", "orbit_velocity")
     true_state = ("orbit_position", "orbit_velocity")
     kind: Literal["orbit_from_pixels"]
-    acceleration_noise_m_s2: NonNegative = Field(description="1 sigma per axis, over each step")
-    pixel_variance_px2: Positive | None = Field(
-        None, description="of each coordinate; the sensor's own if left out"
-    )
-    updates_in_control: bool = Field(False, description="use what is seen while cameras turn")
-    attitude_bias: bool = Field(False, description="estimate the errors of the known attitudes")
-    tracks: Literal["debris", "all"] = Field("debris", description="all: companions as well")
-    detections: Literal["all", "own"] = Field("all", description="own: only the debris', labelled")
+    acceleration_noise_m_s2: NonNegative
+    """Standard deviation per axis of an acceleration that lasts a step."""
+    pixel_variance_px2: Positive | None = None
+    """Variance of each coordinate of a point; left out, it is that of `detections`: the noise
+    squared, and 1/12 of rounding."""
+    updates_in_control: bool = False
+    """Use what cameras show while they turn."""
+    attitude_bias: bool = False
+    """Estimate the constant errors of the known attitudes, three for each camera."""
+    tracks: Literal["debris", "all"] = "debris"
+    """What is tracked: `all` are the companions as well, for `joint_association`; not with
+    `attitude_bias`."""
+    detections: Literal["all", "own"] = "all"
+    """Points that are used; `own` are the debris' own, for `known_association` and
+    `linearised_at_truth`."""
 
     @model_validator(mode="after")
     def _one_at_a_time(self) -> "OrbitFromPixels":

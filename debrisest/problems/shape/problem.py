@@ -7,7 +7,7 @@ Pesce et al. 2017, section 7: density 1 g/cm3 unless another one, or the mass, i
 from typing import Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from debrisest.arrays import Array, BoolArray, Data
 from debrisest.clock import Clock
@@ -31,11 +31,13 @@ class ConstantDensityShape(ProblemPart):
     model_kind = "shape_model"
     kind: Literal["constant_density_shape"]
     density_kg_m3: Positive = 1000.0
-    mass_kg: Positive | None = Field(None, description="of the body, in place of the density")
-    known_length_m: Positive | None = Field(
-        None, description="longest distance between two points of the body, for the scale"
-    )
+    """Density, the same everywhere."""
+    mass_kg: Positive | None = None
+    """Mass of the body, in the place of the density."""
+    known_length_m: Positive | None = None
+    """Longest distance between two points of the body; it gives the scale."""
     known_length_sigma_m: NonNegative = 0.0
+    """Standard deviation of the known length."""
 
     @model_validator(mode="after")
     def _one_of_two(self) -> "ConstantDensityShape":

@@ -37,7 +37,9 @@ class _StereoPose(ProblemPart):
     start_needs: ClassVar[tuple[str, ...]] = tuple(NAMES)
     true_state = tuple(f"true_{name}" for name in NAMES)
     measures: list[Measure] | None = None
+    """What is used; none: all that is measured."""
     score_delay_s: NonNegative = 0.0
+    """Errors are taken against the truth so much later, rounded to whole steps."""
 
     @property
     def needed(self) -> tuple[str, ...]:
@@ -63,7 +65,9 @@ class ProcessNoise(Keys):
     """What a filter adds per step, 1 sigma per axis."""
 
     velocity_m_s: NonNegative = 0.0
+    """Standard deviation of each component of the velocity."""
     rate_rad_s: NonNegative = 0.0
+    """Standard deviation of each component of the rate."""
 
 
 class StereoPoseAdditive(_StereoPose):
@@ -72,8 +76,11 @@ class StereoPoseAdditive(_StereoPose):
     model_kind = "model"
     kind: Literal["stereo_pose_additive"]
     process_noise: ProcessNoise = ProcessNoise()
+    """Standard deviations added per step."""
     transition: Literal["exact", "first_order"] = "exact"
+    """Derivative of a step: exact, or I + F dt."""
     raw_rotation: bool = False
+    """Rotate with the quaternion as it is, not divided by its norm."""
 
     def model(self, data: Data, clock: Clock) -> Model:
         """Return process and measurement of one clock step."""

@@ -69,9 +69,13 @@ class Variances(Keys):
     """A variance for each block of the state."""
 
     q_ib: Positive
+    """Variance of each component of `q_ib`."""
     q_bf: Positive
+    """Variance of each component of `q_bf`."""
     rate_rad2_s2: Positive
+    """Variance of each rate."""
     moments: Positive
+    """Variance of each scaled moment."""
 
     def diagonal(self) -> Array:
         """Return the covariance (14, 14)."""
@@ -88,8 +92,11 @@ class TumblingAttitude(ProblemPart):
     start_needs = ("q_ib", "q_bf", "rate_b", "moments_b")
     kind: Literal["tumbling_attitude"]
     integrator: Literal["euler", "rk4"]
+    """One step of the model per epoch: explicit Euler, or classical Runge-Kutta."""
     process_noise: Variances
+    """Variances added per epoch."""
     measurement_noise: Positive
+    """Variance of each quaternion component."""
 
     def measurements(self, data: Data) -> Array:
         """Return the recovered attitude (run, time, 4)."""

@@ -42,7 +42,10 @@ class TumblingMotion(InFeatureFrame):
     model_kind = "motion_model"
     kind: Literal["tumbling_motion"]
     measured: Literal["points", "attitudes", "rates"] = "points"
+    """What is used: `measured_point`, `measured_q_if` or `measured_rate_f`."""
     geometry: Literal["known", "unknown"] = "known"
+    """Whether the points' places `known_point_f` are known, or estimated along; the body's axes are
+    then free, and inertial at one epoch."""
 
     @model_validator(mode="after")
     def _geometry_of_points(self) -> "TumblingMotion":

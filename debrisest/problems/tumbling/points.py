@@ -22,8 +22,11 @@ class MotionVariances(Keys):
     """A variance for each block of errors, the same in all directions."""
 
     attitude_rad2: Positive
+    """Variance of the attitude about each axis."""
     rate_rad2_s2: Positive
+    """Variance of each rate."""
     log_inertia: Positive
+    """Variance of the logarithm of the inertia tensor, each element."""
 
 
 class TumblingPoints(InFeatureFrame):

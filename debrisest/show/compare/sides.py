@@ -8,12 +8,11 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from debrisest.errors import UserError
+from debrisest.errors import UserError, allowed_names
 from debrisest.results.assessed import SIMULATED, Assessed, assessed
 from debrisest.results.chunk import Chunk
 from debrisest.results.open import open_results
 from debrisest.results.results import Results
-from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.schema import SIMULATED as OF_SIMULATION
 from debrisest.scenario.schema import Tables
 

@@ -6,12 +6,11 @@ from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
-from debrisest.errors import UserError
+from debrisest.errors import UserError, allowed_names
 from debrisest.results.assessed import Assessed, assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
-from debrisest.scenario.mistakes import allowed_names
 from debrisest.show.plots.beside import beside
 from debrisest.show.plots.files import USUAL, write
 from debrisest.show.plots.gather import (

@@ -15,10 +15,9 @@ from typing import NamedTuple
 import pandas as pd
 
 from debrisest.assessment.statistics import STATISTICS
-from debrisest.errors import UserError
+from debrisest.errors import UserError, allowed_names, meant
 from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
-from debrisest.scenario.mistakes import allowed_names
 from debrisest.scenario.window import window_of
 from debrisest.show.tables.verdict import CONSISTENCY, Verdict
 from debrisest.vocabulary import VOCABULARY
@@ -129,7 +128,9 @@ def _read(path: Path) -> list[tuple[int, list[str]]]:
             rows = csv.reader(file)
             return [(rows.line_num, row) for row in rows if row]
     except OSError as error:
-        raise UserError(f"{path}: published values cannot be read: {error.strerror}") from None
+        beside = meant(path.name, (one.name for one in path.parent.glob("*.csv")))
+        said = f"{path}: published values cannot be read: {error.strerror}{beside}"
+        raise UserError(said) from None
     except (UnicodeDecodeError, csv.Error):
         raise UserError(f"{path}: published values must be a CSV file in UTF-8") from None
 
