@@ -4,6 +4,9 @@ Along a direction of the inertia that the data hardly show, the valley of the ch
 rises otherwise than a parabola: the second derivative at its floor tells neither how wide it is nor
 where the other unknowns go. So where three sigma along a straight line do not cost nine, the floor
 is followed to where they do, to both sides.
+
+The directions follow each other: the floor along one is that at given inertia along all that are
+known less. Else it would run off along these, whose own floors say the same again.
 """
 
 from itertools import combinations
@@ -23,6 +26,7 @@ _STRAIGHT = 0.1  # of nine, by which a straight line may cost more or less
 _ENOUGH, _TOO_MUCH = 0.6, 1.7  # of nine, where the floor has been followed far enough
 _TRIES = 8
 _ITERATIONS = 40
+_NEAR = 0.1  # sigmas, of a direction, over which nothing bends
 _FIRM = 1e-3  # sigma with which a point of the valley is held, in sigmas of the direction
 
 
@@ -40,7 +44,8 @@ def spread_of(evidence: Evidence, found: Descent, covariance: Array) -> Spread:
     bent = [way for way in range(5) if valley.may_bend(way) and valley.bends(way)]
     for way in bent:
         sides = sides.replaced(len(axes) - 5 + way, *valley.followed(way))
-    return Spread(sides, *valley.twists(sides, bent))
+    ends = sides.chosen([len(axes) - 5 + way for way in bent])
+    return Spread(sides, *valley.twists(sides, bent), ends, valley.begins(ends, bent))
 
 
 class _Valley:
@@ -66,9 +71,9 @@ class _Valley:
         ends = (displaced(self.arc, sign * FAR * self.ways[way]) for sign in (1.0, -1.0))
         return any(abs(self.rise(end) / FAR**2 - 1.0) > _STRAIGHT for end in ends)
 
-    def floor(self, start: Arc, ways: list[int]) -> Arc:
-        """Return the best arc with the inertia held along some directions."""
-        held = self.directions[:, ways] / (_FIRM * self.sigma[ways])
+    def floor(self, start: Arc, way: int) -> Arc:
+        """Return the best arc with the inertia held along a direction and all that are worse."""
+        held = self.directions[:, way:] / (_FIRM * self.sigma[way:])
         return descend(
             self.evidence, start, _ITERATIONS, Prior(start.log_inertia, held @ held.T)
         ).arc
@@ -84,7 +89,7 @@ class _Valley:
         far = min(FAR, farthest)
         for _ in range(_TRIES):
             start = displaced(begin, sign * (far - near) * self.ways[way])
-            end = self.floor(start, [way])
+            end = self.floor(start, way)
             share = self.rise(end) / FAR**2
             if share > _TOO_MUCH:
                 above = far
@@ -97,6 +102,13 @@ class _Valley:
         least = far * self.sigma[way] / PRIOR_SIGMA
         return end, max(FAR * np.sqrt(max(share, 0.0)), least)
 
+    def begins(self, ends: Sides, bent: list[int]) -> Sides:
+        """Return how directions begin that have these ends, with as much of a sigma along them."""
+        half = ends.moved(self.arc)[0][:, INERTIA]
+        share = np.sum(half.T * self.directions[:, bent], axis=0) / self.sigma[bent]
+        near = Sides.straight(self.arc, _NEAR / FAR * self.ways[bent])
+        return near._replace(far=np.tile(_NEAR / share, (2, 1)))
+
     def twists(self, sides: Sides, bent: list[int]) -> tuple[Sides, Sides]:
         """Return the floor half way between two bent directions, and across."""
         return self._between(sides, bent, 1.0), self._between(sides, bent, -1.0)
@@ -108,7 +120,7 @@ class _Valley:
         for first, second in combinations(bent, 2):
             pairs = (ends[0][second], ends[1][second])[:: int(sign)]
             starts = [displaced(self.arc, half * (ends[k][first] + pairs[k])) for k in (0, 1)]
-            found = [self.floor(start, [first, second]) for start in starts]
+            found = [self.floor(start, first) for start in starts]
             far = [np.sqrt(max(self.rise(end), FAR)) for end in found]
             both = stacked(found[:1]), stacked(found[1:])
             result = result.joined(Sides(*both, np.array(far)[:, None]))

@@ -25,7 +25,7 @@ class Prior(NamedTuple):
 
 
 _NOWHERE = Normal(np.inf, np.zeros(UNKNOWNS), np.zeros((UNKNOWNS, UNKNOWNS)))
-_NOTHING_ELSE = Prior(np.zeros(5), np.zeros((5, 5)))
+NOTHING_ELSE = Prior(np.zeros(5), np.zeros((5, 5)))
 
 
 class Descent(NamedTuple):
@@ -41,7 +41,7 @@ class Descent(NamedTuple):
 
 
 def descend(
-    evidence: Evidence, arc: Arc, iterations: int = 30, held: Prior = _NOTHING_ELSE
+    evidence: Evidence, arc: Arc, iterations: int = 30, held: Prior = NOTHING_ELSE
 ) -> Descent:
     """Return the best arc near ``arc``."""
     damping, settled = 1e-6, False
@@ -78,7 +78,7 @@ def cost(evidence: Evidence, arc: Arc) -> float:
     if not _sought(arc):
         return np.inf
     with np.errstate(over="ignore", invalid="ignore"):
-        total = evidence.chi2(*along(arc, evidence.times)) + _prior(arc, _NOTHING_ELSE)
+        total = evidence.chi2(*along(arc, evidence.times)) + _prior(arc, NOTHING_ELSE)
     return total if np.isfinite(total) else np.inf
 
 

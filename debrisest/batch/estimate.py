@@ -16,7 +16,14 @@ from debrisest.batch.local_rates import local_rates
 from debrisest.batch.motion import Motion, Status
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.rates import Rates
-from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, odd_points, other_body, pairs
+from debrisest.batch.rigid_sets import (
+    largest_rigid_set,
+    noise_of,
+    odd_points,
+    on_known_body,
+    other_body,
+    pairs,
+)
 from debrisest.batch.solve import Solution, solve
 from debrisest.batch.tracks import Tracks, tracks
 
@@ -48,7 +55,7 @@ def estimate_from_points(
     if not (np.isfinite(typical) and typical > 0.0):
         typical = 1.0
     scale = float(np.nanmax([typical, noise_of(found)]))
-    kept = largest_rigid_set(found, scale)
+    kept = (largest_rigid_set if model is None else on_known_body)(found, scale)
     other = other_body(found, scale, kept)
     tracked = tracks(times, points, typical if sigma is None else sigma)
     tracked = tracked.without(~kept)

@@ -21,7 +21,7 @@ _WILD = 2.0  # chi2/dof, in units of the noise of single windows
 
 def holding(evidence: Evidence, local: Local) -> tuple[float, float]:
     """Return the limits, s, of the longest window that stands the tests, from some starts."""
-    inertia = inertia_start(local)
+    inertia = inertia_start(local).centre
     windows = [_longest(evidence, arc_of(local, k, inertia), local) for k in best_windows(local)]
     return max(windows, key=lambda window: window[1] - window[0])
 

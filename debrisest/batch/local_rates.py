@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.batch.evidence import Seen
 
 _LARGEST_TURN = np.radians(40.0)  # over half a window
 _FEWEST_EPOCHS = 5
+_LEAST_REACH = 0.4  # of half a window, from the middle to the farther epochs of either side
 _MOST_WINDOWS = 60
 _FEWEST_WINDOWS = 12
 _REWEIGHTINGS = 3
@@ -78,15 +79,10 @@ def _half_length(times: Array, q: Array) -> float:
 
 
 def _fits(times: Array, q: Array, information: Array, half: float) -> Local | None:
-    stride = max(half / 2.0, (times[-1] - times[0]) / _MOST_WINDOWS)
-    even = np.minimum(np.arange(times[0], times[-1], stride), times[-1])  # rounding may go past it
-    middles = times[np.unique(np.searchsorted(times, even))]
-    fits = []
-    for middle in middles:
-        low, high = np.searchsorted(times, [middle - half, middle + half + 1e-9])
-        if high - low >= _FEWEST_EPOCHS and _both_sides(times[low:high], middle, half):
-            chosen = slice(low, high)
-            fits.append(_fit(middle, times[chosen], q[chosen], information[chosen]))
+    fits = [
+        _fit(times[middle], times[low:high], q[low:high], information[low:high])
+        for middle, low, high in _windows(times, half)
+    ]
     if not fits:
         return None
     time, attitude, rate, covariance, excess = (np.array(part) for part in zip(*fits))
@@ -96,8 +92,23 @@ def _fits(times: Array, q: Array, information: Array, half: float) -> Local | No
     return Local(time, half, attitude, rate, covariance, float(np.sqrt(clean)))
 
 
-def _both_sides(times: Array, middle: float, half: float) -> bool:
-    return bool(times[0] < middle - 0.4 * half and times[-1] > middle + 0.4 * half)
+def _windows(times: Array, half: float) -> IntArray:
+    """Return middle, first epoch and end of windows (window, 3) that reach far to both sides.
+
+    They are spread over the epochs that can be middles, which a grid over all might miss: what
+    turns into view for a few epochs at a time is gone at most others.
+    """
+    low = np.searchsorted(times, times - half)
+    high = np.searchsorted(times, times + half + 1e-9)
+    reach = np.minimum(times - times[low], times[high - 1] - times)
+    middles = np.flatnonzero((high - low >= _FEWEST_EPOCHS) & (reach > _LEAST_REACH * half))
+    if not len(middles):
+        return np.zeros((0, 3), dtype=np.int64)
+    stride = max(half / 2.0, (times[-1] - times[0]) / _MOST_WINDOWS)
+    last = times[middles[-1]]
+    even = np.minimum(np.arange(times[0], last + stride, stride), last)
+    chosen = middles[np.unique(np.searchsorted(times[middles], even))]
+    return np.stack([chosen, low[chosen], high[chosen]], axis=-1)
 
 
 def _fit(

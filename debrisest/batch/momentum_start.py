@@ -8,17 +8,22 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
+from debrisest.batch.descent import Prior
 from debrisest.batch.local_rates import Local
 from debrisest.dynamics import log_inertia
 
 _PRIOR = 0.5  # of each p
 _REWEIGHTINGS = 6
 _LEAST_MOMENT, _LARGEST_MOMENT = 0.02, 1.7  # of a body whose moments add up to 3
+_STEP = 1e-5  # of each p
 _SHARE_OF_TURN = 0.05  # rad, error of a window's attitude against which its rate is weighed
 
 
-def inertia_start(local: Local) -> Array:
-    """Return the log-ratios of the inertia (5) from the conservation of angular momentum."""
+def inertia_start(local: Local) -> Prior:
+    """Return the log-ratios of the inertia from the conservation of angular momentum.
+
+    Their information is that of the windows at the momentum that suits them best.
+    """
     back = np.swapaxes(quaternion.to_matrix(local.q), -1, -2)
     turned = np.moveaxis(log_inertia.BASIS @ local.rate[:, None, :, None], 1, 2)[..., 0]
     rows = np.concatenate([turned, -back], axis=-1)
@@ -34,7 +39,16 @@ def inertia_start(local: Local) -> Array:
         solution = np.linalg.lstsq(hold, pull, rcond=1e-12)[0]
         residual = (rows @ solution) + local.rate
         robust = 1.0 / (1.0 + np.sum(residual**2, axis=-1) / (9.0 * variance))
-    return log_inertia.log_ratios(_of_a_body(solution[:5]))
+    tensor = _of_a_body(solution[:5])
+    to_p = np.linalg.inv(_by_p(tensor))
+    information = np.linalg.inv(np.linalg.inv(hold)[:5, :5])
+    return Prior(log_inertia.log_ratios(tensor), to_p.T @ information @ to_p)
+
+
+def _by_p(tensor: Array) -> Array:
+    """Derivative (5, 5) of the log-ratios by ``p``."""
+    ends = [log_inertia.log_ratios(tensor + side * log_inertia.BASIS) for side in (_STEP, -_STEP)]
+    return np.asarray((ends[0] - ends[1]).T / (2.0 * _STEP))
 
 
 def _of_a_body(p: Array) -> Array:

@@ -47,8 +47,8 @@ def path_of(arc: Arc, spread: Spread, times: Array) -> Path:
     errors then lie on a sphere, not on a plane.
     """
     q, rate = along(arc, times)
-    axes, both, across = (_moved(arc, q, rate, sides, times) for sides in spread)
-    ways = np.moveaxis(np.concatenate([*axes, 0.5 * (both[1] - across[1])]), 0, 1)
+    errors = spread.ways([_moved(arc, q, rate, sides, times) for sides in spread])
+    ways = np.moveaxis(errors, 0, 1)
     joint = np.asarray(np.swapaxes(ways, -1, -2) @ ways)
     return Path(times, q, rate, joint[:, TURN, TURN], joint[:, RATE, RATE], joint)
 

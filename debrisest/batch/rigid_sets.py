@@ -97,14 +97,24 @@ def largest_rigid_set(found: Pairs, sigma: float) -> BoolArray:
     return best
 
 
+def on_known_body(found: Pairs, sigma: float) -> BoolArray:
+    """Return which points (feature,) keep the distances of the known body.
+
+    Sets of points that were never seen together are all of the body, since its model says so.
+    """
+    kept = largest_rigid_set(found, sigma)
+    while True:
+        compared = np.isfinite(found.noise[kept]).any(axis=0)
+        more = _among(found, sigma, ~kept & ~compared)
+        if more.sum() < 2:
+            return kept
+        kept = kept | more
+
+
 def other_body(found: Pairs, sigma: float, body: BoolArray) -> BoolArray:
     """Return which points (feature,) that are not of a body keep their distances: three or more."""
-    rest = np.flatnonzero(~body)
-    among = np.ix_(rest, rest)
-    members = rest[largest_rigid_set(Pairs(*(part[among] for part in found)), sigma)]
-    result = np.zeros(len(body), dtype=bool)
-    result[members] = len(members) >= _FEWEST_OF_A_BODY
-    return result
+    members = _among(found, sigma, ~body)
+    return members if members.sum() >= _FEWEST_OF_A_BODY else np.zeros_like(members)
 
 
 def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
@@ -126,6 +136,14 @@ def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
             agreed[i, seen[i]] = np.sum(votes & (np.abs(off) < _ODD * np.sqrt(2.0) * sigma), axis=0)
         odd |= seen & (agreed < 0.5 * asked)
     return np.asarray(odd.T)
+
+
+def _among(found: Pairs, sigma: float, points: BoolArray) -> BoolArray:
+    """Return the largest rigid set (feature,) of some points."""
+    among = np.ix_(points, points)
+    result = np.zeros(len(points), dtype=bool)
+    result[points] = largest_rigid_set(Pairs(*(part[among] for part in found)), sigma)
+    return result
 
 
 def _grown(votes: Array, seed: int) -> BoolArray:

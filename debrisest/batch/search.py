@@ -15,8 +15,8 @@ def search(evidence: Evidence, local: Local) -> Growth:
     starts that end at the same place, and leave nothing that lasts, are enough.
     """
     best: Growth | None = None
-    for arc in starts(local):
-        growth = grow(evidence, arc, local.half, local.noise)
+    for start in starts(local):
+        growth = grow(evidence, start, local.half, local.noise)
         if growth.explains or (best is not None and _agree(growth, best)):
             return growth
         if best is None or _rank(growth) > _rank(best):

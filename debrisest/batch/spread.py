@@ -42,6 +42,11 @@ class Sides(NamedTuple):
             _with(self.ahead, axis, ahead[0]), _with(self.behind, axis, behind[0]), far
         )
 
+    def chosen(self, axes: list[int]) -> Self:
+        """Return the sides of some axes."""
+        ahead, behind = (Arc(arcs.epoch, *(part[axes] for part in arcs[1:])) for arcs in self[:2])
+        return type(self)(ahead, behind, self.far[:, axes])
+
     def joined(self, other: Self) -> Self:
         """Return the sides of both."""
         return type(self)(
@@ -56,26 +61,34 @@ class Sides(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """All axes of an arc's errors, and what two of them do together."""
+    """All axes of an arc's errors, what two of them do together, and what one does on its way."""
 
     axes: Sides
     along: Sides
     """Half way between two axes (pair, ...), and across: half way between one and the other's
     behind."""
     across: Sides
+    ends: Sides
+    """Those of the axes that bend (bent, ...), and how these begin at the arc: an axis that bends
+    like an S does not lie on the line between its ends."""
+    begins: Sides
 
     def covariance(self, arc: Arc) -> Array:
         """Return that of the errors of the unknowns (11, 11)."""
-        half, middle = self.axes.moved(arc)
-        twist = 0.5 * (self.along.moved(arc)[1] - self.across.moved(arc)[1])
-        ways = np.concatenate([half, middle, twist])
+        ways = self.ways([sides.moved(arc) for sides in self])
         return np.asarray(ways.T @ ways)
+
+    @staticmethod
+    def ways(moved: Sequence[tuple[Array, Array]]) -> Array:
+        """Return independent errors (way, ..., n) of one sigma each, as all sides have moved."""
+        axes, along, across, ends, begins = moved
+        return np.concatenate([*axes, 0.5 * (along[1] - across[1]), ends[0] - begins[0]])
 
 
 def straight(arc: Arc, covariance: Array) -> Spread:
     """Return the spread of a ``covariance (11, 11)`` that bends nowhere."""
     none = Sides.straight(arc, np.zeros((0, 11)))
-    return Spread(Sides.straight(arc, principal_ways(covariance)), none, none)
+    return Spread(Sides.straight(arc, principal_ways(covariance)), none, none, none, none)
 
 
 def principal_ways(covariance: Array) -> Array:

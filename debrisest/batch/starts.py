@@ -1,11 +1,13 @@
 """Starts of the descent, best first."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.batch.arc import Arc
+from debrisest.batch.descent import Prior
 from debrisest.batch.local_rates import Local
 from debrisest.batch.momentum_start import inertia_start
 from debrisest.dynamics import log_inertia
@@ -14,17 +16,27 @@ _MOST_WINDOWS = 4
 _GUESSES = np.array(
     [[0.004, 0.002], [0.05, 0.03], [-0.3, -0.2], [0.3, 0.2], [-0.2, 0.3]]
 )  # of the first two moments, where the momentum says nothing
+_SIGMA = 0.2  # of a guess's log-ratios, half the distance to others
 
 
-def starts(local: Local) -> Iterator[Arc]:
+class Start(NamedTuple):
+    """Where a descent may begin."""
+
+    arc: Arc
+    held: Prior
+    """The inertia as long as the window is too short to show it: one that is let go at once is
+    forgotten in the first window, and all starts are the same."""
+
+
+def starts(local: Local) -> Iterator[Start]:
     """Yield arcs about the middle of the best windows: inertia by momentum first, then guesses."""
     best = best_windows(local)
     inertia = inertia_start(local)
     for window in best:
-        yield arc_of(local, window, inertia)
+        yield Start(arc_of(local, window, inertia.centre), inertia)
     for guess in inertia_guesses():
         for window in best[:2]:
-            yield arc_of(local, window, guess)
+            yield Start(arc_of(local, window, guess), Prior(guess, np.eye(5) / _SIGMA**2))
 
 
 def inertia_guesses() -> Array:

@@ -7,8 +7,9 @@ import numpy as np
 from debrisest.arrays import BoolArray
 from debrisest.batch.acceptance import Fit, tested
 from debrisest.batch.arc import Arc, along, course, moved
-from debrisest.batch.descent import Descent, covariance, descend
+from debrisest.batch.descent import NOTHING_ELSE, Descent, Prior, covariance, descend
 from debrisest.batch.evidence import Evidence
+from debrisest.batch.starts import Start
 
 _SURE_TURN = 0.35  # rad, sigma of the attitude up to which a window may grow at once
 _LEAST_GROWTH, _MOST_GROWTH = 0.25, 1.0  # of the window's length, to each side
@@ -44,20 +45,23 @@ class Growth(NamedTuple):
         return self.whole and self.fit.steady and self.fit.noise_below
 
 
-def grow(evidence: Evidence, arc: Arc, half: float, noise: float = 1.0) -> Growth:
+def grow(evidence: Evidence, start: Start, half: float, noise: float = 1.0) -> Growth:
     """Return the fit of the longest window that an arc, true about its epoch, explains.
 
     ``noise`` is the factor by which that of single epochs exceeds what was said. On the way some
-    hundred epochs of a window are enough; the whole span counts all, from its middle, where the
-    information is rounder.
+    hundred epochs of a window are enough, and the inertia is held as the start has it; the whole
+    span counts all by itself, from its middle, where the information is rounder.
     """
+    arc, held = start
     first, last = float(evidence.times[0]), float(evidence.times[-1])
     low, high = arc.epoch - half, arc.epoch + half
     good: Growth | None = None
     while True:
         whole = low <= first and high >= last
         arc = moved(arc, 0.5 * (first + last)) if whole else arc
-        found, kept = _fitted(evidence.within(_chosen(evidence, low, high, whole)), arc)
+        found, kept = _fitted(evidence.within(_chosen(evidence, low, high, whole)), arc, held)
+        if whole:
+            found, kept = _fitted(kept, found.arc)
         fit = tested(kept, found.arc)
         now = Growth(found, fit, kept, (max(low, first), min(high, last)), whole)
         if fit.excess > _WILD * np.clip(noise, 1.0, _LARGEST_NOISE) ** 2 and not (
@@ -93,10 +97,12 @@ def widened(growth: Growth, wider: Evidence) -> Growth:
     return growth._replace(found=found, fit=fit, evidence=kept) if agrees else growth
 
 
-def _fitted(window: AnyEvidence, arc: Arc) -> tuple[Descent, AnyEvidence]:
+def _fitted(
+    window: AnyEvidence, arc: Arc, held: Prior = NOTHING_ELSE
+) -> tuple[Descent, AnyEvidence]:
     """Return the fit of a window, first with all points, then without outliers."""
     kept = _without_wild(window, arc)
-    found = descend(kept, arc, 12)
+    found = descend(kept, arc, 12, held)
     for _ in range(_ROUNDS):
         q, rate = along(found.arc, window.times)
         usual = float(np.nanmedian(window.squares(q, rate))) / _MEDIAN
@@ -105,7 +111,7 @@ def _fitted(window: AnyEvidence, arc: Arc) -> tuple[Descent, AnyEvidence]:
         if limit == _GATE and np.array_equal(gated.dof, kept.dof):
             break
         kept = gated
-        found = descend(kept, found.arc, 12)
+        found = descend(kept, found.arc, 12, held)
     return found, kept
 
 

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from debrisest.attitude import quaternion
+from debrisest.batch.evidence import Seen
 from debrisest.batch.local_rates import _fits, local_rates
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.starts import best_windows
@@ -27,3 +29,15 @@ def test_windows_end_with_the_data_however_their_spacing_is_rounded() -> None:
     for start, length in rng.uniform(1.0, 1500.0, (300, 2)):
         times = np.linspace(start, start + length, 30)
         assert _fits(times, q, information, 0.0) is None
+
+
+def test_windows_are_found_in_what_turns_into_view_as_often_as_they_are_spaced() -> None:
+    """Sixty windows of 1200 s are 20 s apart: a grid meets each stretch at its first epoch."""
+    times = np.arange(1.0, 1202.0)
+    times = times[(times - 1.0) % 20.0 < 7.0]
+    q = quaternion.exp(0.15 * times[:, None] * [0.0, 0.0, 1.0])
+    local = local_rates(times, Seen(q, np.tile(np.eye(3), (len(times), 1, 1))))
+    assert len(local.time) >= 12
+    np.testing.assert_allclose(
+        local.rate, np.tile([0.0, 0.0, 0.15], (len(local.time), 1)), atol=1e-9
+    )

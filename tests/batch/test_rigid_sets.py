@@ -1,8 +1,9 @@
 """Which points keep their distances."""
 
 import numpy as np
+import pytest
 
-from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, odd_points, pairs
+from debrisest.batch.rigid_sets import largest_rigid_set, noise_of, odd_points, on_known_body, pairs
 from debrisest.batch.tracks import tracks
 
 
@@ -27,6 +28,22 @@ def test_distances_of_a_known_body_tell_a_point_elsewhere(tumbling, box) -> None
     model[2] += [0.0, 0.4, 0.4]
     found = pairs(tracks(tumbling.times, rigid(tumbling, 2), 0.02), model)
     assert np.flatnonzero(~largest_rigid_set(found, 0.02)).tolist() == [2]
+
+
+@pytest.mark.parametrize(("moved", "second"), [(0.0, True), (0.5, False)])
+def test_points_never_seen_with_the_others_are_of_a_known_body(
+    tumbling, box, moved, second
+) -> None:
+    """Three in the first half and two in the second: only a model says that they are one body."""
+    sigma, half = 0.02, len(tumbling.times) // 2
+    turned = np.einsum("kij,cj->kci", tumbling.attitude.as_matrix(), box[:5])
+    points = turned + sigma * np.random.default_rng(8).normal(size=turned.shape)
+    points[half:, :3], points[:half, 3:] = np.nan, np.nan
+    points[:, 4] += moved
+    seen = tracks(tumbling.times, points, sigma)
+    expected = [True] * 3 + [second] * 2
+    assert on_known_body(pairs(seen, box[:5]), sigma).tolist() == expected
+    assert largest_rigid_set(pairs(seen), sigma).tolist() == [True] * 3 + [False] * 2
 
 
 def test_swapped_points_are_odd(tumbling) -> None:
