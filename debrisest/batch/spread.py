@@ -6,7 +6,6 @@ data as well as its number of sigmas says. What lies between them follows, in wh
 whatever time: half their difference, and how far their middle is off.
 """
 
-from collections.abc import Sequence
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -40,14 +39,6 @@ class Sides(NamedTuple):
         far[:, axis] = ahead[1], behind[1]
         return type(self)(
             _with(self.ahead, axis, ahead[0]), _with(self.behind, axis, behind[0]), far
-        )
-
-    def joined(self, other: Self) -> Self:
-        """Return the sides of both."""
-        return type(self)(
-            _joined(self.ahead, other.ahead),
-            _joined(self.behind, other.behind),
-            np.concatenate([self.far, other.far], axis=1),
         )
 
     def moved(self, arc: Arc) -> tuple[Array, Array]:
@@ -97,15 +88,6 @@ def shift(arc: Arc, others: Arc) -> Array:
     turn = quaternion.log(quaternion.multiply(others.q, quaternion.conjugate(arc.q)))
     changes = others.rate - arc.rate, others.log_inertia - arc.log_inertia
     return np.concatenate([turn, *changes], axis=-1)
-
-
-def stacked(arcs: Sequence[Arc]) -> Arc:
-    """Return arcs of one epoch as copies (arc, ...) of one."""
-    return Arc(arcs[0].epoch, *(np.stack(parts) for parts in zip(*(arc[1:] for arc in arcs))))
-
-
-def _joined(first: Arc, second: Arc) -> Arc:
-    return Arc(first.epoch, *(np.concatenate(pair) for pair in zip(first[1:], second[1:])))
 
 
 def _with(arcs: Arc, axis: int, arc: Arc) -> Arc:

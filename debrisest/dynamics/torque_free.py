@@ -8,6 +8,7 @@ import numpy as np
 
 from debrisest.arrays import Array, ComplexArray
 from debrisest.attitude import quaternion
+from debrisest.attitude.vectors import cross
 from debrisest.dynamics.elliptic import quarter_period
 from debrisest.dynamics.nutation import Nutation, nutation
 
@@ -81,4 +82,4 @@ def _shortest_arc(vector: Array, direction: Array) -> Array:
     """Unit quaternion that turns ``vector`` into ``direction``, which is not opposite to it."""
     norm = np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), _AT_REST)
     scalar = 1.0 + np.sum(vector * direction, axis=-1, keepdims=True) / norm
-    return quaternion.normalize(np.concatenate([scalar, np.cross(vector / norm, direction)], -1))
+    return quaternion.normalize(np.concatenate([scalar, cross(vector / norm, direction)], -1))
