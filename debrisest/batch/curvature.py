@@ -24,6 +24,7 @@ _STRAIGHT = 0.1  # of nine, by which a straight line may cost more or less
 _ENOUGH, _TOO_MUCH = 0.6, 1.7  # of nine, where the floor has been followed far enough
 _TRIES = 8
 _ITERATIONS = 40
+_GAIN = 0.02  # of nine, by which the floor may be missed: a hundredth of a sigma's square
 _FIRM = 1e-3  # sigma with which a point of the valley is held, in sigmas of the direction
 
 
@@ -73,7 +74,7 @@ class _Valley:
         firm = self.directions / (_FIRM * self.sigma)
         held = [firm[:, list(chosen)] for chosen in ways]
         priors = [Prior(arc.log_inertia, one @ one.T) for arc, one in zip(starts, held)]
-        return [end.arc for end in descend_all(self.evidence, starts, _ITERATIONS, priors)]
+        return [end.arc for end in descend_all(self.evidence, starts, _ITERATIONS, priors, _GAIN)]
 
     def followed(self, bent: list[int]) -> list[tuple[tuple[Arc, float], tuple[Arc, float]]]:
         """Return both ends of the floor along directions, and how many sigmas these are away."""

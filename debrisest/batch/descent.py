@@ -16,7 +16,8 @@ from debrisest.batch.evidence import Evidence, Normal
 PRIOR_SIGMA = 0.8
 """Of each log-ratio of the inertia, about equal moments: a cube to a long rod."""
 _WIDEST = 6.0  # length of the log-ratios beyond which no body is looked for
-_SMALLEST_GAIN = 1e-3  # of the chi-square, where the descent ends
+SMALLEST_GAIN = 1e-3
+"""Of the chi-square, where a descent ends."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-9, 1e8
 
 
@@ -53,14 +54,25 @@ def descend(
 
 
 def descend_all(
-    evidence: Evidence, arcs: Sequence[Arc], iterations: int, held: Sequence[Prior] = ()
+    evidence: Evidence,
+    arcs: Sequence[Arc],
+    iterations: int,
+    held: Sequence[Prior] = (),
+    least_gain: float = SMALLEST_GAIN,
 ) -> list[Descent]:
-    """Return the best arc near each of ``arcs``, which share their epoch; ``held`` is of each."""
+    """Return the best arc near each of ``arcs``, which share their epoch; ``held`` is of each.
+
+    A descent ends where its next step would lower the chi-square by less than ``least_gain``.
+    """
     held = held or [_NOTHING_ELSE] * len(arcs)
     starts = zip(arcs, held, _normals(evidence, arcs, held))
     walks = [_Walk(arc, prior, *normal) for arc, prior, normal in starts]
     for _ in range(iterations):
-        tried = [(walk, walk.next(evidence.unknowns_fixed)) for walk in walks if not walk.ended]
+        tried = [
+            (walk, walk.next(evidence.unknowns_fixed, least_gain))
+            for walk in walks
+            if not walk.ended
+        ]
         going = [(walk, arc) for walk, arc in tried if not walk.ended]
         if not going:
             break
@@ -78,10 +90,10 @@ class _Walk:
         self.damping = 1e-6
         self.settled = self.ended = False
 
-    def next(self, fixed: int) -> Arc:
+    def next(self, fixed: int, least_gain: float) -> Arc:
         """Return the arc to try; the walk ends where that would gain nothing."""
         step, gain = _step(self.normal, self.damping, fixed)
-        self.settled = self.ended = gain < _SMALLEST_GAIN
+        self.settled = self.ended = gain < least_gain
         return displaced(self.arc, step)
 
     def judge(self, arc: Arc, normal: Normal, total: float) -> None:

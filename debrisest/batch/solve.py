@@ -166,7 +166,7 @@ def _any_motion(
 def _nothing(evidence: Evidence, times: Array) -> Solution:
     """Return the attitudes of single epochs, if any."""
     path, seen = unknown_path(times), evidence.seen()
-    good = np.isfinite(seen.q[:, 0]) & (not evidence.of_rate)
+    good = np.isfinite(seen.q[:, 0]) & (not evidence.of_rate) & np.isin(evidence.times, times)
     at = np.searchsorted(times, evidence.times[good])
     path.q[at] = seen.q[good]
     path.turn_covariance[at] = np.linalg.pinv(seen.information[good], 1e-12, hermitian=True)

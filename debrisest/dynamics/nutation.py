@@ -52,9 +52,9 @@ class Nutation:
         ]
         return np.stack(sums, axis=-1) / (self.dn2 + self.k2_sn2 * cn * cn)[..., None]
 
-    def rate(self, times: Array) -> Array:
-        """Rates ``(..., time, 3)`` in the order of the moments, rad/s."""
-        return _pick(self.ordered_rate(times), np.argsort(self.order, axis=-1)[..., None, :])
+    def reordered(self, rates: Array) -> Array:
+        """Rates ``(..., time, 3)`` in the order of the moments, of those in ``order``."""
+        return _pick(rates, np.argsort(self.order, axis=-1)[..., None, :])
 
 
 def nutation(rate0: Array, moments: Array) -> Nutation:
