@@ -9,21 +9,20 @@ vectors are in radians. Leading axes broadcast, and NaN in gives NaN out.
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.attitude.vectors import cross
 
 
 def multiply(p: Array, q: Array) -> Array:
     """Hamilton product ``p q``, ``(..., 4)``: the rotation ``q`` followed by ``p``."""
-    p0, p1, p2, p3 = np.moveaxis(p, -1, 0)
-    q0, q1, q2, q3 = np.moveaxis(q, -1, 0)
-    return np.stack(
-        [
-            p0 * q0 - p1 * q1 - p2 * q2 - p3 * q3,
-            p0 * q1 + p1 * q0 + p2 * q3 - p3 * q2,
-            p0 * q2 - p1 * q3 + p2 * q0 + p3 * q1,
-            p0 * q3 + p1 * q2 - p2 * q1 + p3 * q0,
-        ],
-        axis=-1,
-    )
+    p0, p1, p2, p3 = _components(p)
+    q0, q1, q2, q3 = _components(q)
+    scalar = p0 * q0 - p1 * q1 - p2 * q2 - p3 * q3
+    result = np.empty((*np.shape(scalar), 4))
+    result[..., 0] = scalar
+    result[..., 1] = p0 * q1 + p1 * q0 + p2 * q3 - p3 * q2
+    result[..., 2] = p0 * q2 - p1 * q3 + p2 * q0 + p3 * q1
+    result[..., 3] = p0 * q3 + p1 * q2 - p2 * q1 + p3 * q0
+    return result
 
 
 def conjugate(q: Array) -> Array:
@@ -40,13 +39,13 @@ def normalize(q: Array) -> Array:
 def rotate(q: Array, v: Array) -> Array:
     """``R(q) v`` for vectors ``v (..., 3)``."""
     vector = q[..., 1:]
-    twice_cross = 2.0 * np.cross(vector, v)
-    return np.asarray(v + q[..., :1] * twice_cross + np.cross(vector, twice_cross))
+    twice_cross = 2.0 * cross(vector, v)
+    return np.asarray(v + q[..., :1] * twice_cross + cross(vector, twice_cross))
 
 
 def to_matrix(q: Array) -> Array:
     """Rotation matrix ``R(q) (..., 3, 3)`` of a unit quaternion."""
-    w, x, y, z = np.moveaxis(q, -1, 0)
+    w, x, y, z = _components(q)
     elements = [
         *(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
         *(2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
@@ -66,6 +65,11 @@ def from_matrix(matrix: Array) -> Array:
     row = np.take_along_axis(products, largest[..., None, None], axis=-2)[..., 0, :]
     row = np.where(row[..., :1] < 0.0, -row, row)
     return np.asarray(row / np.linalg.norm(row, axis=-1, keepdims=True))
+
+
+def _components(q: Array) -> tuple[Array, Array, Array, Array]:
+    """The four of ``q``, much cheaper than by moving an axis."""
+    return q[..., 0], q[..., 1], q[..., 2], q[..., 3]
 
 
 def _products(matrix: Array) -> Array:

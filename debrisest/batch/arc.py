@@ -6,6 +6,7 @@ vector in inertial axes, applied from the left, and differences: an error of the
 same at all epochs, and none of the rate.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -35,16 +36,16 @@ class Arc(NamedTuple):
 
 
 class Course(NamedTuple):
-    """An arc at given times, with its derivatives by the errors of the unknowns."""
+    """Arcs at given times, with their derivatives by the errors of the unknowns."""
 
     q: Array
-    """(time, 4)."""
+    """(..., time, 4)."""
     rate: Array
-    """(time, 3), rad/s."""
+    """(..., time, 3), rad/s."""
     turn_by: Array
-    """(time, 3, 11), in inertial axes."""
+    """(..., time, 3, 11), in inertial axes."""
     rate_by: Array
-    """(time, 3, 11), in the feature frame."""
+    """(..., time, 3, 11), in the feature frame."""
 
 
 def along(arc: Arc, times: Array) -> tuple[Array, Array]:
@@ -62,20 +63,22 @@ def along(arc: Arc, times: Array) -> tuple[Array, Array]:
 def course(arc: Arc, times: Array) -> Course:
     """Return the motion and its derivatives, by forward differences of eight copies."""
     step = _steps(arc, times)
-    shift = np.vstack([np.zeros(8), np.diag(step)])
+    shift = step[..., None, :] * np.eye(9, 8, -1)
     copies = Arc(
         arc.epoch,
-        np.broadcast_to(arc.q, (9, 4)),
-        arc.rate + shift[:, :3],
-        arc.log_inertia + shift[:, 3:],
+        np.broadcast_to(arc.q[..., None, :], (*shift.shape[:-1], 4)),
+        arc.rate[..., None, :] + shift[..., :3],
+        arc.log_inertia[..., None, :] + shift[..., 3:],
     )
     q, rate = along(copies, times)
-    turn = quaternion.multiply(q[1:], quaternion.conjugate(q[0]))
-    turn_by, rate_by = np.zeros((2, len(times), 3, UNKNOWNS))
+    others = (..., slice(1, None), slice(None), slice(None))
+    turn = quaternion.multiply(q[others], quaternion.conjugate(q[..., :1, :, :]))
+    turn_by, rate_by = np.zeros((2, *arc.q.shape[:-1], len(times), 3, UNKNOWNS))
     turn_by[..., TURN] = np.eye(3)
-    turn_by[..., 3:] = np.moveaxis(quaternion.log(turn), 0, -1) / step
-    rate_by[..., 3:] = np.moveaxis(rate[1:] - rate[0], 0, -1) / step
-    return Course(q[0], rate[0], turn_by, rate_by)
+    steps = step[..., None, None, :]
+    turn_by[..., 3:] = np.moveaxis(quaternion.log(turn), -3, -1) / steps
+    rate_by[..., 3:] = np.moveaxis(rate[others] - rate[..., :1, :, :], -3, -1) / steps
+    return Course(q[..., 0, :, :], rate[..., 0, :, :], turn_by, rate_by)
 
 
 def displaced(arc: Arc, error: Array) -> Arc:
@@ -90,8 +93,20 @@ def moved(arc: Arc, epoch: float) -> Arc:
     return Arc(epoch, quaternion.normalize(q[..., 0, :]), rate[..., 0, :], arc.log_inertia)
 
 
+def stacked(arcs: Sequence[Arc]) -> Arc:
+    """Return arcs of one epoch as copies (arc, ...) of one."""
+    return Arc(arcs[0].epoch, *(np.stack(parts) for parts in zip(*(arc[1:] for arc in arcs))))
+
+
+def joined(*arcs: Arc) -> Arc:
+    """Return copies (arc, ...) of one epoch one after the other."""
+    return Arc(arcs[0].epoch, *(np.concatenate(parts) for parts in zip(*(arc[1:] for arc in arcs))))
+
+
 def _steps(arc: Arc, times: Array) -> Array:
-    """Steps (8,) that turn the end of the arc by about as much each."""
+    """Steps (..., 8) that turn the end of the arc by about as much each."""
     span = 1.0 + np.abs(times - arc.epoch).max(initial=0.0)
-    turned = 1.0 + np.linalg.norm(arc.rate) * span
-    return np.repeat(_TURN_OF_STEP / np.array([span, turned]), (3, 5))
+    turned = 1.0 + np.linalg.norm(arc.rate, axis=-1) * span
+    by_rate = np.broadcast_to(span, (*turned.shape, 3))
+    by_inertia = np.broadcast_to(turned[..., None], (*turned.shape, 5))
+    return np.asarray(_TURN_OF_STEP / np.concatenate([by_rate, by_inertia], axis=-1))

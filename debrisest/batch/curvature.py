@@ -9,16 +9,17 @@ The directions follow each other: the floor along one is that at given inertia a
 known less. Else it would run off along these, whose own floors say the same again.
 """
 
+from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.batch.arc import INERTIA, Arc, displaced
-from debrisest.batch.descent import PRIOR_SIGMA, Descent, Prior, cost, descend
+from debrisest.batch.arc import INERTIA, Arc, displaced, stacked
+from debrisest.batch.descent import PRIOR_SIGMA, Descent, Prior, costs, descend_all
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.observability import inertia_directions
-from debrisest.batch.spread import FAR, Sides, Spread, principal_ways, shift, stacked
+from debrisest.batch.spread import FAR, Sides, Spread, principal_ways, shift
 
 _OTHERS = slice(0, 6)
 _NARROW = 0.01  # of the best direction's sigma
@@ -27,6 +28,7 @@ _ENOUGH, _TOO_MUCH = 0.6, 1.7  # of nine, where the floor has been followed far 
 _TRIES = 8
 _ITERATIONS = 40
 _NEAR = 0.1  # sigmas, of a direction, over which nothing bends
+_GAIN = 0.02  # of nine, by which the floor may be missed: a hundredth of a sigma's square
 _FIRM = 1e-3  # sigma with which a point of the valley is held, in sigmas of the direction
 
 
@@ -41,9 +43,9 @@ def spread_of(evidence: Evidence, found: Descent, covariance: Array) -> Spread:
     others = np.pad(principal_ways(rest), ((0, 0), (0, 5)))
     axes = np.concatenate([others, valley.ways])
     sides = Sides.straight(found.arc, axes)
-    bent = [way for way in range(5) if valley.may_bend(way) and valley.bends(way)]
-    for way in bent:
-        sides = sides.replaced(len(axes) - 5 + way, *valley.followed(way))
+    bent = valley.bent()
+    for way, both in zip(bent, valley.followed(bent)):
+        sides = sides.replaced(len(axes) - 5 + way, *both)
     ends = sides.chosen([len(axes) - 5 + way for way in bent])
     return Spread(sides, *valley.twists(sides, bent), ends, valley.begins(ends, bent))
 
@@ -53,54 +55,42 @@ class _Valley:
 
     def __init__(self, evidence: Evidence, found: Descent, covariance: Array) -> None:
         self.evidence, self.arc = evidence, found.arc
-        self.lowest = cost(evidence, found.arc)
+        self.lowest = costs(evidence, [found.arc])[0]
         self.sigma, self.directions = inertia_directions(covariance)
         per_sigma = self.directions / np.maximum(self.sigma, np.finfo(float).tiny)
         self.ways = (covariance[:, INERTIA] @ per_sigma).T
 
-    def rise(self, arc: Arc) -> float:
-        """Return by how much an arc costs more than the best."""
-        return cost(self.evidence, arc) - self.lowest
+    def rises(self, arcs: Sequence[Arc]) -> Array:
+        """Return by how much arcs cost more than the best (arc,)."""
+        return np.asarray(costs(self.evidence, arcs) - self.lowest)
 
-    def may_bend(self, way: int) -> bool:
-        """Return whether squares of a direction's sigma are not far below the sigma of the best."""
-        return bool(self.sigma[way] ** 2 > _NARROW * self.sigma[0])
+    def bent(self) -> list[int]:
+        """Return directions along which the cost at a side is not that of a parabola.
 
-    def bends(self, way: int) -> bool:
-        """Return whether the costs at both sides are not those of a parabola."""
-        ends = (displaced(self.arc, sign * FAR * self.ways[way]) for sign in (1.0, -1.0))
-        return any(abs(self.rise(end) / FAR**2 - 1.0) > _STRAIGHT for end in ends)
+        Squares of their sigma are not far below the sigma of the best.
+        """
+        ways = np.flatnonzero(self.sigma**2 > _NARROW * self.sigma[0])
+        ends = [displaced(self.arc, sign * FAR * self.ways[k]) for k in ways for sign in (1, -1)]
+        off = np.abs(self.rises(ends) / FAR**2 - 1.0).reshape(-1, 2)
+        return [int(way) for way in ways[np.any(off > _STRAIGHT, axis=1)]]
 
-    def floor(self, start: Arc, way: int) -> Arc:
-        """Return the best arc with the inertia held along a direction and all that are worse."""
-        held = self.directions[:, way:] / (_FIRM * self.sigma[way:])
-        return descend(
-            self.evidence, start, _ITERATIONS, Prior(start.log_inertia, held @ held.T)
-        ).arc
+    def floors(self, starts: Sequence[Arc], ways: Sequence[int]) -> list[Arc]:
+        """Return the best arcs, the inertia of each held along a direction and all worse ones."""
+        firm = self.directions / (_FIRM * self.sigma)
+        held = [firm[:, way:] for way in ways]
+        priors = [Prior(arc.log_inertia, one @ one.T) for arc, one in zip(starts, held)]
+        return [end.arc for end in descend_all(self.evidence, starts, _ITERATIONS, priors, _GAIN)]
 
-    def followed(self, way: int) -> tuple[tuple[Arc, float], tuple[Arc, float]]:
-        """Return both ends of the floor along a direction, and how many sigmas these are away."""
-        return self._end(way, 1.0), self._end(way, -1.0)
-
-    def _end(self, way: int, sign: float) -> tuple[Arc, float]:
-        """Return where the floor has risen by about nine, or leaves what a body can be."""
-        farthest = FAR * PRIOR_SIGMA / self.sigma[way]
-        near, begin, above = 0.0, self.arc, np.inf
-        far = min(FAR, farthest)
+    def followed(self, bent: list[int]) -> list[tuple[tuple[Arc, float], tuple[Arc, float]]]:
+        """Return both ends of the floor along directions, and how many sigmas these are away."""
+        scouts = [_Scout(self, way, sign) for way in bent for sign in (1.0, -1.0)]
         for _ in range(_TRIES):
-            start = displaced(begin, sign * (far - near) * self.ways[way])
-            end = self.floor(start, way)
-            share = self.rise(end) / FAR**2
-            if share > _TOO_MUCH:
-                above = far
-                far = 0.5 * (near + far)
-            elif share < _ENOUGH and far < farthest:
-                near, begin = far, end
-                far = min(2.0 * far, farthest, 0.5 * (far + above))
-            else:
-                break
-        least = far * self.sigma[way] / PRIOR_SIGMA
-        return end, max(FAR * np.sqrt(max(share, 0.0)), least)
+            going = [scout for scout in scouts if not scout.there]
+            ends = self.floors([scout.start() for scout in going], [scout.way for scout in going])
+            for scout, end, rise in zip(going, ends, self.rises(ends)):
+                scout.judge(end, float(rise) / FAR**2)
+        reached = [scout.reached() for scout in scouts]
+        return list(zip(reached[::2], reached[1::2]))
 
     def begins(self, ends: Sides, bent: list[int]) -> Sides:
         """Return how directions begin that have these ends, with as much of a sigma along them."""
@@ -111,17 +101,47 @@ class _Valley:
 
     def twists(self, sides: Sides, bent: list[int]) -> tuple[Sides, Sides]:
         """Return the floor half way between two bent directions, and across."""
-        return self._between(sides, bent, 1.0), self._between(sides, bent, -1.0)
+        ends = [shift(self.arc, side)[-5:] for side in (sides.ahead, sides.behind)]
+        return self._between(bent, ends, ends), self._between(bent, ends, ends[::-1])
 
-    def _between(self, sides: Sides, bent: list[int], sign: float) -> Sides:
-        half = np.sqrt(0.5)
-        result = Sides.straight(self.arc, np.zeros((0, 11)))
-        ends = shift(self.arc, sides.ahead)[-5:], shift(self.arc, sides.behind)[-5:]
-        for first, second in combinations(bent, 2):
-            pairs = (ends[0][second], ends[1][second])[:: int(sign)]
-            starts = [displaced(self.arc, half * (ends[k][first] + pairs[k])) for k in (0, 1)]
-            found = [self.floor(start, first) for start in starts]
-            far = [np.sqrt(max(self.rise(end), FAR)) for end in found]
-            both = stacked(found[:1]), stacked(found[1:])
-            result = result.joined(Sides(*both, np.array(far)[:, None]))
-        return result
+    def _between(self, bent: list[int], ends: list[Array], others: list[Array]) -> Sides:
+        pairs = [list(pair) for pair in combinations(bent, 2)]
+        if not pairs:
+            return Sides.straight(self.arc, np.zeros((0, 11)))
+        one, two = np.transpose(pairs)
+        errors = [np.sqrt(0.5) * (end[one] + other[two]) for end, other in zip(ends, others)]
+        starts = [displaced(self.arc, error) for error in np.concatenate(errors)]
+        found = self.floors(starts, [first for first, _ in pairs * 2])
+        far = np.sqrt(np.maximum(self.rises(found), FAR)).reshape(2, -1)
+        return Sides(stacked(found[: len(pairs)]), stacked(found[len(pairs) :]), far)
+
+
+class _Scout:
+    """A search along the floor for where it has risen by about nine, or leaves all bodies."""
+
+    def __init__(self, valley: _Valley, way: int, sign: float) -> None:
+        self.way, self.step = way, sign * valley.ways[way]
+        self.spread = PRIOR_SIGMA / valley.sigma[way]
+        self.near, self.begin, self.above = 0.0, valley.arc, np.inf
+        self.far = min(FAR, FAR * self.spread)
+        self.there = False
+
+    def start(self) -> Arc:
+        """Return where to look for the floor next."""
+        return displaced(self.begin, (self.far - self.near) * self.step)
+
+    def judge(self, end: Arc, share: float) -> None:
+        """Take the floor there, which has risen by a share of nine, for the end, or go on."""
+        self.end, self.share = end, share
+        farthest = FAR * self.spread
+        if share > _TOO_MUCH:
+            self.above, self.far = self.far, 0.5 * (self.near + self.far)
+        elif share < _ENOUGH and self.far < farthest:
+            self.near, self.begin = self.far, end
+            self.far = min(2.0 * self.far, farthest, 0.5 * (self.far + self.above))
+        else:
+            self.there = True
+
+    def reached(self) -> tuple[Arc, float]:
+        """Return the end, and how many sigmas it is away."""
+        return self.end, max(FAR * np.sqrt(max(self.share, 0.0)), self.far / self.spread)

@@ -1,17 +1,23 @@
-"""Least squares of an arc's unknowns, by Levenberg and Marquardt, with a prior on the inertia."""
+"""Least squares of an arc's unknowns, by Levenberg and Marquardt, with a prior on the inertia.
 
+Descents from several arcs go side by side: each has its own damping and prior, and those that have
+not ended take their next step in one call of the motion.
+"""
+
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.batch.arc import INERTIA, UNKNOWNS, Arc, along, course, displaced
+from debrisest.batch.arc import INERTIA, UNKNOWNS, Arc, Course, along, course, displaced, stacked
 from debrisest.batch.evidence import Evidence, Normal
 
 PRIOR_SIGMA = 0.8
 """Of each log-ratio of the inertia, about equal moments: a cube to a long rod."""
 _WIDEST = 6.0  # length of the log-ratios beyond which no body is looked for
-_SMALLEST_GAIN = 1e-3  # of the chi-square, where the descent ends
+SMALLEST_GAIN = 1e-3
+"""Of the chi-square, where a descent ends."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-9, 1e8
 
 
@@ -44,23 +50,61 @@ def descend(
     evidence: Evidence, arc: Arc, iterations: int = 30, held: Prior = NOTHING_ELSE
 ) -> Descent:
     """Return the best arc near ``arc``."""
-    damping, settled = 1e-6, False
-    normal, lowest = _normal(evidence, arc, held)
+    return descend_all(evidence, [arc], iterations, [held])[0]
+
+
+def descend_all(
+    evidence: Evidence,
+    arcs: Sequence[Arc],
+    iterations: int,
+    held: Sequence[Prior] = (),
+    least_gain: float = SMALLEST_GAIN,
+) -> list[Descent]:
+    """Return the best arc near each of ``arcs``, which share their epoch; ``held`` is of each.
+
+    A descent ends where its next step would lower the chi-square by less than ``least_gain``.
+    """
+    held = held or [NOTHING_ELSE] * len(arcs)
+    starts = zip(arcs, held, _normals(evidence, arcs, held))
+    walks = [_Walk(arc, prior, *normal) for arc, prior, normal in starts]
     for _ in range(iterations):
-        step, gain = _step(normal, damping, evidence.unknowns_fixed)
-        if gain < _SMALLEST_GAIN:
-            settled = True
+        tried = [
+            (walk, walk.next(evidence.unknowns_fixed, least_gain))
+            for walk in walks
+            if not walk.ended
+        ]
+        going = [(walk, arc) for walk, arc in tried if not walk.ended]
+        if not going:
             break
-        tried = displaced(arc, step)
-        there, total = _normal(evidence, tried, held)
-        if total < lowest:
-            arc, normal, lowest = tried, there, total
-            damping = max(0.1 * damping, _LEAST_DAMPING)
-        elif damping > _MOST_DAMPING:
-            break
+        normals = _normals(evidence, [arc for _, arc in going], [walk.held for walk, _ in going])
+        for (walk, arc), (normal, total) in zip(going, normals):
+            walk.judge(arc, normal, total)
+    return [Descent(walk.arc, walk.normal.chi2, walk.normal.hold, walk.settled) for walk in walks]
+
+
+class _Walk:
+    """A descent on its way."""
+
+    def __init__(self, arc: Arc, held: Prior, normal: Normal, lowest: float) -> None:
+        self.arc, self.held, self.normal, self.lowest = arc, held, normal, lowest
+        self.damping = 1e-6
+        self.settled = self.ended = False
+
+    def next(self, fixed: int, least_gain: float) -> Arc:
+        """Return the arc to try; the walk ends where that would gain nothing."""
+        step, gain = _step(self.normal, self.damping, fixed)
+        self.settled = self.ended = gain < least_gain
+        return displaced(self.arc, step)
+
+    def judge(self, arc: Arc, normal: Normal, total: float) -> None:
+        """Go to a better arc, or try a shorter step next."""
+        if total < self.lowest:
+            self.arc, self.normal, self.lowest = arc, normal, total
+            self.damping = max(0.1 * self.damping, _LEAST_DAMPING)
+        elif self.damping > _MOST_DAMPING:
+            self.ended = True
         else:
-            damping = max(10.0 * damping, 1e-6)
-    return Descent(arc, normal.chi2, normal.hold, settled)
+            self.damping = max(10.0 * self.damping, 1e-6)
 
 
 def covariance(hold: Array, fixed: int = 0) -> Array:
@@ -73,21 +117,33 @@ def covariance(hold: Array, fixed: int = 0) -> Array:
     return result
 
 
-def cost(evidence: Evidence, arc: Arc) -> float:
-    """Return the chi-square with the wide prior, infinite where no body is looked for."""
-    if not _sought(arc):
-        return np.inf
-    with np.errstate(over="ignore", invalid="ignore"):
-        total = evidence.chi2(*along(arc, evidence.times)) + _prior(arc, NOTHING_ELSE)
-    return total if np.isfinite(total) else np.inf
+def costs(evidence: Evidence, arcs: Sequence[Arc]) -> Array:
+    """Return chi-squares (arc,) with the wide prior, infinite where no body is looked for."""
+    result = np.full(len(arcs), np.inf)
+    sought = [k for k, arc in enumerate(arcs) if _sought(arc)]
+    if sought:
+        with np.errstate(over="ignore", invalid="ignore"):
+            motions = along(stacked([arcs[k] for k in sought]), evidence.times)
+            for k, q, rate in zip(sought, *motions):
+                result[k] = evidence.chi2(q, rate) + _prior(arcs[k], NOTHING_ELSE)
+    return np.where(np.isfinite(result), result, np.inf)
 
 
-def _normal(evidence: Evidence, arc: Arc, held: Prior) -> tuple[Normal, float]:
-    """Return the normal equations and the cost, infinite where no body is looked for."""
-    if not _sought(arc):
-        return _NOWHERE, np.inf
-    with np.errstate(over="ignore", invalid="ignore"):
-        normal = evidence.normal(course(arc, evidence.times))
+def _normals(
+    evidence: Evidence, arcs: Sequence[Arc], held: Sequence[Prior]
+) -> list[tuple[Normal, float]]:
+    """Return the normal equations and the cost of each, infinite where no body is looked for."""
+    result = [(_NOWHERE, np.inf)] * len(arcs)
+    sought = [k for k, arc in enumerate(arcs) if _sought(arc)]
+    if sought:
+        with np.errstate(over="ignore", invalid="ignore"):
+            courses = course(stacked([arcs[k] for k in sought]), evidence.times)
+            for k, parts in zip(sought, zip(*courses)):
+                result[k] = _with_prior(evidence.normal(Course(*parts)), arcs[k], held[k])
+    return result
+
+
+def _with_prior(normal: Normal, arc: Arc, held: Prior) -> tuple[Normal, float]:
     pull, hold = normal.pull.copy(), normal.hold.copy()
     pull[INERTIA] -= arc.log_inertia * PRIOR_SIGMA**-2
     pull[INERTIA] -= held.information @ (arc.log_inertia - held.centre)

@@ -37,13 +37,15 @@ def estimate_from_points(
     sigma: Array | float | None,
     model: Array | None = None,
     near: Arc | None = None,
+    at: Array | None = None,
 ) -> Motion:
     """Return the motion of the body that most of the tracked points belong to.
 
     ``points (time, feature, 3)``, m, in inertially fixed axes from any origin at each epoch, NaN
     where not seen; ``sigma``, m, one number, (time, feature) or (time, feature, 3), or None where
     it is to be found; ``model (feature, 3)``, m, places in the feature frame, None if unknown;
-    ``near`` an arc close to the motion, such as that of fewer epochs, which saves the search.
+    ``near`` an arc close to the motion, such as that of fewer epochs, which saves the search;
+    ``at`` the times, s, at which the motion is told, where these are not ``times``.
     """
     plain = tracks(times, points, 1.0)
     found = pairs(plain, model)
@@ -63,26 +65,31 @@ def estimate_from_points(
     unit = typical if sigma is None else 1.0
     whole, tracked = tracked, tracked.without(odd_points(tracked, found, scale))
     tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
+    at = times if at is None else at
     if model is not None:
         solution = _model_in_doubt(
-            solve(KnownPoints(tracked, model), times, sigma is not None, near=near), plain
+            solve(KnownPoints(tracked, model), at, sigma is not None, near=near), plain
         )
         return _with_points(solution, plain, whole, other, unit)
     cloud = align_clouds(tracked)
     all_points = FreePoints(tracked, cloud.model)
     joined = cloud.tracks.seen.any(axis=0)
     wider = None if np.array_equal(joined, tracked.seen.any(axis=0)) else all_points
-    solution = solve(cloud, times, sigma is not None, wider)
+    solution = solve(cloud, at, sigma is not None, wider)
     return _with_points(solution, plain, whole, other, unit)
 
 
 def estimate_from_attitudes(
-    times: Array, q: Array, sigma: Array | float | None = None, near: Arc | None = None
+    times: Array,
+    q: Array,
+    sigma: Array | float | None = None,
+    near: Arc | None = None,
+    at: Array | None = None,
 ) -> Motion:
     """Return the motion of a body from measured ``q_if (time, 4)``, NaN where there is none.
 
     ``sigma``, rad, one number or (time,); or a covariance (time, 3, 3), rad^2, in inertial axes;
-    or None where it is to be found. ``near`` is as for points.
+    or None where it is to be found. ``near`` and ``at`` are as for points.
     """
     seen = np.asarray(np.isfinite(q).all(axis=-1))
     information = _information(len(times), 1.0 if sigma is None else sigma, seen)
@@ -91,17 +98,22 @@ def estimate_from_attitudes(
     if sigma is None:
         unit = max(_noise_of_windows(evidence), _LEAST_NOISE)
         evidence = evidence.scaled(unit)
-    return _without_points(solve(evidence, times, sigma is not None, near=near), times, unit)
+    solution = solve(evidence, times if at is None else at, sigma is not None, near=near)
+    return _without_points(solution, times, unit)
 
 
 def estimate_from_rates(
-    times: Array, rate: Array, sigma: Array | float | None = None, near: Arc | None = None
+    times: Array,
+    rate: Array,
+    sigma: Array | float | None = None,
+    near: Arc | None = None,
+    at: Array | None = None,
 ) -> Motion:
     """Return the motion of a body from measured rates (time, 3), rad/s, in axes fixed in it.
 
     ``sigma``, rad/s, as for attitudes, a covariance in body axes. No attitude is measured: that at
     the arc's epoch is what the rates add up to from the first epoch, and its sigma there is zero.
-    ``near`` is as for points.
+    ``near`` and ``at`` are as for points.
     """
     seen = np.asarray(np.isfinite(rate).all(axis=-1))
     information = _information(len(times), 1.0 if sigma is None else sigma, seen)
@@ -110,7 +122,8 @@ def estimate_from_rates(
     if sigma is None:
         unit = max(_noise_of_windows(evidence), _LEAST_NOISE)
         evidence = evidence.scaled(unit)
-    return _without_points(solve(evidence, times, sigma is not None, near=near), times, unit)
+    solution = solve(evidence, times if at is None else at, sigma is not None, near=near)
+    return _without_points(solution, times, unit)
 
 
 def _model_in_doubt(solution: Solution, plain: Tracks) -> Solution:

@@ -7,8 +7,9 @@ from debrisest.arrays import Array
 from debrisest.batch.arc import Arc
 from debrisest.batch.motion import Motion
 
-Estimate = Callable[[int, Arc | None], Motion]
-"""From the number of epochs that count, and an arc that may be near, to the motion at them."""
+Estimate = Callable[[int, Arc | None, Array | None], Motion]
+"""From the number of epochs that count, an arc that may be near, and times, s, to the motion at
+these times, or else at the epochs that count."""
 
 
 class MotionModel(NamedTuple):

@@ -36,9 +36,9 @@ def online(estimate: Estimate, times: Array) -> Iterator[Stretch]:
     near = None
     ends = epochs_of_runs(times)
     for first, after in zip(ends, [*ends[1:], len(times)]):
-        motion = estimate(first + 1, near)
+        motion = estimate(first + 1, near, times[first:after] if after < len(times) else None)
         near = motion.arc if motion.status.accepted else None
-        yield Stretch(motion, motion.at(times[first:after]))
+        yield Stretch(motion, motion.path.at(slice(first - after, None)))
 
 
 def epochs_of_runs(times: Array) -> list[int]:

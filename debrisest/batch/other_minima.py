@@ -8,7 +8,7 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.batch.arc import INERTIA
-from debrisest.batch.descent import Descent, covariance, descend
+from debrisest.batch.descent import Descent, covariance, descend_all
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.starts import inertia_guesses
 
@@ -23,7 +23,7 @@ def lowest_minimum(evidence: Evidence, found: Descent) -> tuple[Descent, bool]:
     It is not where another end explains the data about as well, with an inertia far off.
     """
     starts = [found.arc._replace(log_inertia=guess) for guess in inertia_guesses()]
-    ends = [descend(evidence, arc, _ITERATIONS) for arc in (found.arc, *starts)]
+    ends = descend_all(evidence, [found.arc, *starts], _ITERATIONS)
     best = min(ends, key=lambda end: end.chi2)
     information = _information(best, evidence.unknowns_fixed)
     rivals = [end for end in ends if end.chi2 < best.chi2 + _AS_WELL]

@@ -29,7 +29,7 @@ def without_biased_points(growth: Growth) -> tuple[Growth, bool]:
     """
     evidence, certain = growth.evidence, True
     while isinstance(evidence, KnownPoints):
-        bias = mean_residuals(evidence, growth.found.arc)
+        bias = mean_residuals(evidence, growth.found.arc, growth.fit.excess)
         present = int(np.sum(evidence.tracks.weight.any(axis=0)))
         if bias.max(initial=0.0) < _LIMIT or present < _FEWEST_POINTS:
             break
@@ -40,16 +40,19 @@ def without_biased_points(growth: Growth) -> tuple[Growth, bool]:
     return growth, certain
 
 
-def mean_residuals(evidence: KnownPoints, arc: Arc) -> Array:
-    """Return the mean residual of each point in body axes (feature,), in its own sigmas."""
+def mean_residuals(evidence: KnownPoints, arc: Arc, excess: float) -> Array:
+    """Return the mean residual of each point in body axes (feature,), in its own sigmas.
+
+    ``excess`` is the variance of the noise in units of the one given.
+    """
     q = along(arc, evidence.times)[0]
     residual = np.nan_to_num(evidence.residuals(q)) @ quaternion.to_matrix(q)
     weight = evidence.tracks.weight
     share = weight / np.maximum(weight.sum(axis=1, keepdims=True), np.finfo(float).tiny)
     total = np.linalg.norm(np.sum(weight[..., None] * residual, axis=0), axis=-1)
     variance = np.sum(weight * (1.0 - share), axis=0)
-    excess = max(tested(evidence, arc).excess, LEAST_NOISE)
-    return np.asarray(total / np.sqrt(np.maximum(variance, np.finfo(float).tiny) * excess))
+    variance *= max(excess, LEAST_NOISE)
+    return np.asarray(total / np.sqrt(np.maximum(variance, np.finfo(float).tiny)))
 
 
 def _refitted(
@@ -67,4 +70,4 @@ def _refitted(
     found = descend(kept, arc, 12)
     fit = tested(kept, found.arc)
     refitted = growth._replace(found=found, fit=fit, evidence=kept)
-    return refitted, kept, float(mean_residuals(kept, found.arc).max(initial=0.0))
+    return refitted, kept, float(mean_residuals(kept, found.arc, fit.excess).max(initial=0.0))

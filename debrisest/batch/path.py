@@ -6,8 +6,8 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import quaternion
-from debrisest.batch.arc import RATE, TURN, UNKNOWNS, Arc, along
-from debrisest.batch.spread import Sides, Spread, halved
+from debrisest.batch.arc import RATE, TURN, UNKNOWNS, Arc, along, joined, stacked
+from debrisest.batch.spread import Spread, halved
 
 
 class Path(NamedTuple):
@@ -46,24 +46,17 @@ def path_of(arc: Arc, spread: Spread, times: Array) -> Path:
     Nothing is linearised: the size of a rate may be known far better than its direction, and
     errors then lie on a sphere, not on a plane.
     """
-    q, rate = along(arc, times)
-    errors = spread.ways([_moved(arc, q, rate, sides, times) for sides in spread])
-    ways = np.moveaxis(errors, 0, 1)
+    sides = [side for part in spread for side in (part.ahead, part.behind)]
+    q, rates = along(joined(stacked([arc]), *sides), times)
+    turns = quaternion.log(quaternion.multiply(q[1:], quaternion.conjugate(q[0])))
+    inertias = np.concatenate([side.log_inertia - arc.log_inertia for side in sides])
+    constant = np.broadcast_to(inertias[:, None], (*turns.shape[:2], 5))
+    errors = np.concatenate([turns, rates[1:] - rates[0], constant], axis=-1)
+    ends = np.split(errors, np.cumsum([len(side.q) for side in sides])[:-1])
+    moved = [halved(ends[2 * k], ends[2 * k + 1], part.far) for k, part in enumerate(spread)]
+    ways = np.moveaxis(spread.ways(moved), 0, 1)
     joint = np.asarray(np.swapaxes(ways, -1, -2) @ ways)
-    return Path(times, q, rate, joint[:, TURN, TURN], joint[:, RATE, RATE], joint)
-
-
-def _moved(arc: Arc, q: Array, rate: Array, sides: Sides, times: Array) -> tuple[Array, Array]:
-    """Half the way between the sides, and its middle, in all errors (axis, time, 11)."""
-    errors = []
-    for arcs in (sides.ahead, sides.behind):
-        other, other_rate = along(arcs, times)
-        turn = quaternion.log(quaternion.multiply(other, quaternion.conjugate(q)))
-        inertia = np.broadcast_to(
-            (arcs.log_inertia - arc.log_inertia)[:, None], (*turn.shape[:2], 5)
-        )
-        errors.append(np.concatenate([turn, other_rate - rate, inertia], axis=-1))
-    return halved(errors[0], errors[1], sides.far)
+    return Path(times, q[0], rates[0], joint[:, TURN, TURN], joint[:, RATE, RATE], joint)
 
 
 def unknown_path(times: Array) -> Path:

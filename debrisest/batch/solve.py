@@ -96,7 +96,7 @@ def _torque_free(
         return None
     judged = _judged(fit, noise_known)
     noise = 1.0 if judged is Judged.CHI_SQUARE_AND_BLOCKS else float(np.sqrt(fit.excess))
-    scaled = evidence.scaled(noise)
+    scaled = evidence if noise == 1.0 else evidence.scaled(noise)
     found = growth.found
     if noise != 1.0 or not found.settled:
         found = descend(scaled, found.arc, 10)
@@ -115,7 +115,8 @@ def _torque_free(
         status = Status.WITHOUT_INERTIA
     if fit.dof < _FEWEST_DOF:
         status = Status.UNTESTED
-    settled = scaled.settled(along(found.arc, scaled.times)[0])
+    if scaled is not evidence or found is not growth.found:
+        fit = tested(scaled, found.arc)
     return Solution(
         status,
         judged,
@@ -123,10 +124,10 @@ def _torque_free(
         found.arc,
         total,
         spread,
-        tested(settled, found.arc),
+        fit,
         growth.span,
         noise,
-        settled,
+        scaled.settled(along(found.arc, scaled.times)[0]),
         local,
         None,
     )
@@ -165,7 +166,7 @@ def _any_motion(
 def _nothing(evidence: Evidence, times: Array) -> Solution:
     """Return the attitudes of single epochs, if any."""
     path, seen = unknown_path(times), evidence.seen()
-    good = np.isfinite(seen.q[:, 0]) & (not evidence.of_rate)
+    good = np.isfinite(seen.q[:, 0]) & (not evidence.of_rate) & np.isin(evidence.times, times)
     at = np.searchsorted(times, evidence.times[good])
     path.q[at] = seen.q[good]
     path.turn_covariance[at] = np.linalg.pinv(seen.information[good], 1e-12, hermitian=True)

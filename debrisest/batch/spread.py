@@ -47,14 +47,6 @@ class Sides(NamedTuple):
         ahead, behind = (Arc(arcs.epoch, *(part[axes] for part in arcs[1:])) for arcs in self[:2])
         return type(self)(ahead, behind, self.far[:, axes])
 
-    def joined(self, other: Self) -> Self:
-        """Return the sides of both."""
-        return type(self)(
-            _joined(self.ahead, other.ahead),
-            _joined(self.behind, other.behind),
-            np.concatenate([self.far, other.far], axis=1),
-        )
-
     def moved(self, arc: Arc) -> tuple[Array, Array]:
         """Return half the way between the sides (axis, 11) and its middle, per sigma."""
         return halved(shift(arc, self.ahead), shift(arc, self.behind), self.far)
@@ -110,15 +102,6 @@ def shift(arc: Arc, others: Arc) -> Array:
     turn = quaternion.log(quaternion.multiply(others.q, quaternion.conjugate(arc.q)))
     changes = others.rate - arc.rate, others.log_inertia - arc.log_inertia
     return np.concatenate([turn, *changes], axis=-1)
-
-
-def stacked(arcs: Sequence[Arc]) -> Arc:
-    """Return arcs of one epoch as copies (arc, ...) of one."""
-    return Arc(arcs[0].epoch, *(np.stack(parts) for parts in zip(*(arc[1:] for arc in arcs))))
-
-
-def _joined(first: Arc, second: Arc) -> Arc:
-    return Arc(first.epoch, *(np.concatenate(pair) for pair in zip(first[1:], second[1:])))
 
 
 def _with(arcs: Arc, axis: int, arc: Arc) -> Arc:

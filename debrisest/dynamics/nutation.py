@@ -41,8 +41,8 @@ class Nutation:
 
     def ordered_rate(self, times: Array) -> Array:
         """Rates ``(..., time, 3)`` in ``order``; their divisor is a sum of squares."""
-        a, b, c = np.moveaxis(self.rate0, -1, 0)[..., None]
-        slope_a, slope_b, slope_c = np.moveaxis(self.slope, -1, 0)[..., None]
+        a, b, c = (self.rate0[..., [axis]] for axis in range(3))
+        slope_a, slope_b, slope_c = (self.slope[..., [axis]] for axis in range(3))
         sn, cn, dn = elliptic(self.frequency * times, self.complement)
         span = sn / self.frequency
         sums = [
@@ -52,9 +52,9 @@ class Nutation:
         ]
         return np.stack(sums, axis=-1) / (self.dn2 + self.k2_sn2 * cn * cn)[..., None]
 
-    def rate(self, times: Array) -> Array:
-        """Rates ``(..., time, 3)`` in the order of the moments, rad/s."""
-        return _pick(self.ordered_rate(times), np.argsort(self.order, axis=-1)[..., None, :])
+    def reordered(self, rates: Array) -> Array:
+        """Rates ``(..., time, 3)`` in the order of the moments, of those in ``order``."""
+        return _pick(rates, np.argsort(self.order, axis=-1)[..., None, :])
 
 
 def nutation(rate0: Array, moments: Array) -> Nutation:

@@ -8,6 +8,7 @@ import numpy as np
 
 from debrisest.arrays import Array, ComplexArray
 from debrisest.attitude import quaternion
+from debrisest.attitude.vectors import cross
 from debrisest.dynamics.elliptic import quarter_period
 from debrisest.dynamics.nutation import Nutation, nutation
 
@@ -23,24 +24,30 @@ def torque_free(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[
     shape = np.broadcast_shapes(q0.shape[:-1], rate0.shape[:-1], moments.shape[:-1])
     rate0, moments = np.broadcast_to(rate0, (*shape, 3)), np.broadcast_to(moments, (*shape, 3))
     motion = nutation(rate0, moments)
-    rate = motion.rate(times)
+    count = _sample_count(motion.complement)
+    samples = motion.period * np.arange(count) / count
+    asked = np.broadcast_to(times, (*shape, *times.shape))
+    both = motion.ordered_rate(np.concatenate([samples, asked], axis=-1))
+    rate = motion.reordered(both[..., count:, :])
     circled = np.arange(3) == motion.order[..., :1]
     reference = np.where(circled, np.copysign(1.0, rate0), 0.0)
-    turn = _precession(times, motion, rate0, moments)
+    turn = _precession(times, motion, rate0, moments, both[..., :count, 0])
     return _attitude(q0, moments * rate0, moments[..., None, :] * rate, reference, turn), rate
 
 
-def _precession(times: Array, motion: Nutation, rate0: Array, moments: Array) -> Array:
+def _precession(
+    times: Array, motion: Nutation, rate0: Array, moments: Array, circled: Array
+) -> Array:
     """Turn about the angular momentum, ``(..., time)``, rad.
 
     Its rate ``(2 T + L w_a) / (L + J_a w_a)`` is smooth and has the period of the circled
-    component ``w_a``, so that its Fourier series can be integrated term by term.
+    component ``w_a (..., sample)``, given over that period, so that its Fourier series can be
+    integrated term by term.
     """
     momentum = np.maximum(np.linalg.norm(moments * rate0, axis=-1), _AT_REST)[..., None]
     twice_energy = np.sum(moments * rate0**2, axis=-1)[..., None]
     moment = np.take_along_axis(moments, motion.order[..., :1], axis=-1)
-    count = _sample_count(motion.complement)
-    circled = np.abs(motion.ordered_rate(motion.period * np.arange(count) / count)[..., 0])
+    circled = np.abs(circled)
     speed = (twice_energy + momentum * circled) / (momentum + moment * circled)
     return _integrate_periodic(np.fft.rfft(speed, norm="forward"), motion.period, times)
 
@@ -81,4 +88,4 @@ def _shortest_arc(vector: Array, direction: Array) -> Array:
     """Unit quaternion that turns ``vector`` into ``direction``, which is not opposite to it."""
     norm = np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), _AT_REST)
     scalar = 1.0 + np.sum(vector * direction, axis=-1, keepdims=True) / norm
-    return quaternion.normalize(np.concatenate([scalar, np.cross(vector / norm, direction)], -1))
+    return quaternion.normalize(np.concatenate([scalar, cross(vector / norm, direction)], -1))

@@ -12,8 +12,8 @@ SIGMA, EPOCHS = 0.05, 120
 def stretches(truth, points, model, epochs=None):
     times = truth.times[:epochs]
 
-    def so_far(count, near):
-        return estimate_from_points(times[:count], points[:count], SIGMA, model, near)
+    def so_far(count, near, at):
+        return estimate_from_points(times[:count], points[:count], SIGMA, model, near, at)
 
     return list(online(so_far, times))
 

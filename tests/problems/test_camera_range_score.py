@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.dynamics import kepler, log_inertia
+from debrisest.dynamics.relative_motion import hill_frame
 from debrisest.problems.camera_range.data import require_measurable
 from debrisest.problems.camera_range.score import scored_features, scores
 from debrisest.target.start_frame import InStartFrame, in_start_frame
@@ -185,3 +187,38 @@ def test_the_angles_sigma_is_that_of_attitudes_so_spread(name: str) -> None:
     found = scores(estimate, "true_q_hc", ROWS)["attitude_error_sigma"]
     assert found.shape == (RUNS, EPOCHS, 3)
     assert np.allclose(found, 0.02, rtol=0.03)
+
+
+def test_components_are_those_of_the_errors_and_the_first_guess_has_its_own() -> None:
+    data, truth = _truth(3)
+    estimate = _estimate(data, truth, np.eye(3))
+    off = np.array([0.3, -0.1, 0.2]) * np.linspace(30.0, 1.0, EPOCHS)[:, None]
+    estimate["relative_position_h"] = data["chaser_position_h"] + off
+    found = scores(estimate, "true_q_hc", ROWS)
+    for axis in range(3):
+        np.testing.assert_allclose(found[f"position_{axis + 1}"], [off[:, axis]] * RUNS)
+    np.testing.assert_allclose(found["guess_position"], 5.0)
+    np.testing.assert_allclose(found["guess_inertia_tensor"], 2.0)
+    small = np.linalg.norm(off, axis=-1) <= 0.5
+    np.testing.assert_allclose(found["position_convergence"], data["time_s"][small][0])
+    assert np.all(found["velocity_convergence"] == 0.0)
+
+
+def test_features_from_the_camera_are_those_that_it_sees() -> None:
+    """By matrices of scipy, from inertial axes on."""
+    data, truth = _truth(4)
+    hill = hill_frame(data["orbit_position"], data["orbit_velocity"])
+    exact = np.empty((RUNS, EPOCHS, POINTS, 3))
+    for run, k in np.ndindex(RUNS, EPOCHS):
+        to_inertial = Rotation.from_quat(data["true_q_ib"][run, k], scalar_first=True)
+        camera = Rotation.from_quat(data["true_q_hc"][run, k], scalar_first=True).as_matrix()
+        in_hill = to_inertial.apply(data["true_point_b"][run]) @ hill[run, k]
+        exact[run, k] = (in_hill - data["chaser_position_h"][run, k]) @ camera
+    estimate = _estimate(data, truth, np.eye(3))
+    q_ch = quaternion.conjugate(data["true_q_hc"])
+    off = exact + np.array([0.0, 0.1, 0.0])
+    estimate |= {"q_cb": quaternion.multiply(q_ch, truth.q_he), "point_c": off}
+    found = scores(estimate, "true_q_hc", ROWS)
+    np.testing.assert_allclose(found["camera_points"], 0.1, atol=1e-9)
+    np.testing.assert_allclose(found["first_point_c_2"], 0.1, atol=1e-9)
+    assert np.abs(found["first_point_c_1"]).max() < 1e-9

@@ -43,5 +43,5 @@ class Batch(FilterPart):
     def _stretches(self, model: MotionModel, estimate: Estimate) -> Sequence[Stretch]:
         if self.online:
             return list(online(estimate, model.times))
-        motion = estimate(len(model.times), None)
+        motion = estimate(len(model.times), None, None)
         return [Stretch(motion, motion.path)]

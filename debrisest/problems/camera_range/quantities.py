@@ -33,6 +33,14 @@ _ESTIMATED = {
     "attitude_error": Quantity(TIME_VECTOR, "rad", "error of the attitude, angles in body axes"),
 }
 
+
+def _components(name: str, unit: str, table_unit: str, words: str) -> dict[str, Quantity]:
+    return {
+        f"{name}_{axis}": Quantity(TIME, unit, f"error of {words}, component {axis}", table_unit)
+        for axis in (1, 2, 3)
+    }
+
+
 QUANTITIES = {
     **with_sigmas(_ESTIMATED),
     "points": Quantity(TIME, "m", "error of the features, RMS over them", "m"),
@@ -56,6 +64,25 @@ QUANTITIES = {
     "inertia_remaining": Quantity(RUN, "1", "inertia_tensor at the end by that at first", "1"),
     "aligned_rate_remaining": Quantity(RUN, "1", "aligned_rate by the first rate error", "1"),
     "aligned_points_remaining": Quantity(RUN, "1", "aligned_points by the first error", "1"),
+    "camera_points": Quantity(TIME, "m", "error of point_c, RMS over the features", "m"),
+    **_components("position", "m", "m", "relative position, Hill axes"),
+    **_components("velocity", "m/s", "m/s", "relative velocity, Hill axes"),
+    **_components("rate_b", "rad/s", "deg/s", "rate, body axes"),
+    **_components("attitude", "rad", "deg", "attitude, angle about body axis"),
+    **_components("first_point", "m", "m", "first feature, body axes"),
+    **_components("first_point_c", "m", "m", "first feature from the camera, its axes"),
+    **{
+        f"tensor_{name}": Quantity(TIME, "kg m2", f"error of I{name}, body axes", "kg m2")
+        for name in ("xx", "yy", "zz", "xy", "xz", "yz")
+    },
+    "guess_position": Quantity(RUN, "m", "position error of the first guess", "m"),
+    "guess_velocity": Quantity(RUN, "m/s", "velocity error of the first guess", "m/s"),
+    "guess_rate": Quantity(RUN, "rad/s", "rate error of the first guess", "deg/s"),
+    "guess_points": Quantity(RUN, "m", "error of the features at first, RMS over them", "m"),
+    "guess_inertia_tensor": Quantity(RUN, "kg m2", "inertia_tensor of the first guess", "kg m2"),
+    "position_convergence": Quantity(RUN, "s", "position error below a tenth of the first", "s"),
+    "velocity_convergence": Quantity(RUN, "s", "velocity error below a tenth of the first", "s"),
+    "first_point_c_error": Quantity(TIME_VECTOR, "m", "error of the first feature of point_c"),
     "inertia_error": Quantity((*TIME, "row", "column"), "kg m2", "error of inertia_b"),
     "log_inertia_error": Quantity((*TIME, "log_ratio"), "1", "error of log_inertia"),
     "reference_point_b": Quantity(POINT, "m", "true features in the estimator's body axes"),

@@ -13,7 +13,8 @@ from debrisest.assessment.observability import known_directions
 from debrisest.assessment.shape_alignment import best_rotation, rms_distance, shape_error
 from debrisest.attitude import quaternion
 from debrisest.dynamics import log_inertia
-from debrisest.target.start_frame import InStartFrame, in_start_frame
+from debrisest.problems.camera_range.by_component import by_component, of_first_guess
+from debrisest.target.start_frame import InStartFrame, attitude_in_hill, in_start_frame
 
 TRUE_STATE = (
     *("true_q_ib", "true_rate_b", "true_point_b", "true_inertia_b", "true_q_hc"),
@@ -36,7 +37,9 @@ def scores(data: Data, camera: str, rows: IntArray, log_inertia_sigma: float | N
     truth = in_start_frame(data, data[camera][:, 0])
     with np.errstate(invalid="ignore"):
         result = _components(data, truth) | _norms(data, truth) | _aligned(data, truth)
-        result |= _remaining(data, truth, result) | _consistency(data, result, rows)
+        guess = _of_guess(data, truth)
+        result |= _remaining(guess, result) | _consistency(data, result, rows)
+        result |= of_first_guess(guess, result, data["time_s"]) | by_component(result)
     if log_inertia_sigma is not None:
         result |= _observability(data, rows[-5:], log_inertia_sigma)
     return result
@@ -62,6 +65,8 @@ def _components(data: Data, truth: InStartFrame) -> Data:
     }
     if "inertia_b" in data:
         result["inertia_error"] = data["inertia_b"] - truth.inertia[:, None]
+    if "point_c" in data:
+        result["first_point_c_error"] = data["point_c"][:, :, 0] - _points_in_camera(data)[:, :, 0]
     if "log_inertia" in data:
         true_s = log_inertia.log_ratios(truth.inertia)
         result["log_inertia_error"] = data["log_inertia"] - true_s[:, None]
@@ -84,6 +89,8 @@ def _norms(data: Data, truth: InStartFrame) -> Data:
         turned = quaternion.rotate(data["q_cb"][..., None, :], data["point_b"])
         turned[..., 2] += _norm(data["relative_position_h"])[..., None]
         result["constraint"] = rms_distance(data["point_c"], turned)
+        seen = np.where(scored_features(data)[:, None, :, None], data["point_c"], np.nan)
+        result["camera_points"] = rms_distance(seen, _points_in_camera(data))
     return result
 
 
@@ -106,16 +113,21 @@ def _aligned(data: Data, truth: InStartFrame) -> Data:
     }
 
 
-def _remaining(data: Data, truth: InStartFrame, errors: Data) -> Data:
-    """Errors at the end as a part of those of the first guess."""
+def _of_guess(data: Data, truth: InStartFrame) -> Data:
+    """Errors (run,) of the first guess."""
     guess = {
         "position": _norm(data["start_relative_position_h"] - data["chaser_position_h"][:, 0]),
         "velocity": _norm(data["start_relative_velocity_h"] - data["chaser_velocity_h"][:, 0]),
         "rate": _norm(data["start_rate_b"] - truth.rate[:, 0]),
         "points": rms_distance(data["start_point_b"], truth.point),
     }
-    if "inertia_tensor" in errors:
+    if "start_inertia_b" in data:
         guess["inertia_tensor"] = _spectral(data["start_inertia_b"] - truth.inertia)
+    return guess
+
+
+def _remaining(guess: Data, errors: Data) -> Data:
+    """Errors at the end as a part of those of the first guess."""
     names = {name: name for name in guess if name in errors}
     names |= {"aligned_rate": "rate", "aligned_points": "points"}
     return {
@@ -148,6 +160,14 @@ def _attitudes(data: Data, truth: InStartFrame) -> tuple[Array, Array]:
     if "q_hb" in data:
         return data["q_hb"], truth.q_he
     return data["q_cb"], quaternion.multiply(quaternion.conjugate(data["true_q_hc"]), truth.q_he)
+
+
+def _points_in_camera(data: Data) -> Array:
+    """True features from the camera, in its axes (run, time, feature, 3), m."""
+    to_camera = quaternion.conjugate(data["true_q_hc"])
+    q_cb = quaternion.multiply(to_camera, attitude_in_hill(data))
+    turned = quaternion.rotate(q_cb[:, :, None], data["true_point_b"][:, None])
+    return turned - quaternion.rotate(to_camera, data["chaser_position_h"])[:, :, None]
 
 
 def _angle_sigma(data: Data) -> Array:

@@ -112,7 +112,7 @@ class TumblingMotion(InFeatureFrame):
 
 
 def _from_points(
-    known: bool, data: Data, times: Array, run: int, count: int, near: Arc | None
+    known: bool, data: Data, times: Array, run: int, count: int, near: Arc | None, at: Array | None
 ) -> Motion:
     points = data["measured_point"][run, :count]
     sigma = data["point_sigma"][run, :count] if "point_sigma" in data else None
@@ -122,23 +122,27 @@ def _from_points(
     if given is not None and not np.nanmax(given) > 0.0:
         raise ValueError("points without noise weigh infinitely: their noise must be positive")
     model = data["known_point_f"][run] if known else None
-    return estimate_from_points(times[:count], points, given, model, near)
+    return estimate_from_points(times[:count], points, given, model, near, at)
 
 
-def _from_attitudes(data: Data, times: Array, run: int, count: int, near: Arc | None) -> Motion:
+def _from_attitudes(
+    data: Data, times: Array, run: int, count: int, near: Arc | None, at: Array | None
+) -> Motion:
     q = data["measured_q_if"][run, :count]
     if "measured_q_if_covariance" in data:
         sigma = data["measured_q_if_covariance"][run, :count]
     else:
         sigma = data["q_if_noise"][run, :count]
     given = None if np.isnan(sigma).all() else sigma
-    return estimate_from_attitudes(times[:count], q, given, near)
+    return estimate_from_attitudes(times[:count], q, given, near, at)
 
 
-def _from_rates(data: Data, times: Array, run: int, count: int, near: Arc | None) -> Motion:
+def _from_rates(
+    data: Data, times: Array, run: int, count: int, near: Arc | None, at: Array | None
+) -> Motion:
     sigma = data["rate_f_noise"][run, :count]
     given = None if np.isnan(sigma).all() else sigma
-    return estimate_from_rates(times[:count], data["measured_rate_f"][run, :count], given, near)
+    return estimate_from_rates(times[:count], data["measured_rate_f"][run, :count], given, near, at)
 
 
 def _component_sigma(q: Array, turn_sigma: Array) -> Array:

@@ -57,6 +57,7 @@ _GROUPS = (
     _Group("rate_error", ("rate_l_sigma", "rate_b_sigma"), "rate", _AXES),
     _Group("attitude_error", ("attitude_error_sigma",), "attitude", _AXES),
     _Group("first_point_error", ("first_point_error_sigma",), "points", _AXES),
+    _Group("first_point_c_error", ("point_c_sigma",), "points", _AXES),
     _Group("attitude", (), "attitude", ("angle",)),
     _Group("points", (), "points", ("all points",)),
     _Group("inertia_ratio_error", ("inertia_ratio_sigma",), "k1", ("k1", "k2")),
@@ -66,6 +67,10 @@ _GROUPS = (
     _Group("log_inertia_error", _LOG_RATIOS, "inertia", ("s4", "s5"), (3, 4)),
 )
 _WORDS = {"k1": "inertia ratio", "inertia": "log-ratio", "inertia_tensor": "inertia"}
+_FIRST_POINT = {
+    "first_point_error": "first point",
+    "first_point_c_error": "first point, camera",
+}
 DATASETS = tuple(dict.fromkeys(group.error for group in _GROUPS))
 _SETTLED = 0.1
 """Part of the time, at the start, that the limits of the axes do not follow."""
@@ -101,7 +106,7 @@ def _group(row: list[Axes], group: _Group, data: Data) -> None:
     row[0].set_ylim(-limit if np.any(error < 0) or sigma is not None else 0.0, limit)
     row[0].locator_params(axis="y", nbins=5)
     shown = unit(group.quantity)
-    name = "first point" if group.error == "first_point_error" else group.quantity
+    name = _FIRST_POINT.get(group.error, group.quantity)
     name = _WORDS.get(name, name)
     row[0].set_ylabel(name if shown == "1" else f"{name} [{shown}]")
 
