@@ -36,10 +36,14 @@ def elliptic(argument: Array, complement: Array) -> tuple[Array, Array, Array]:
 
 
 def _landen_moduli(complement: Array) -> list[tuple[Array, Array]]:
-    """Moduli ``k1`` of the successive transformations, with ``1 - k1``, until they vanish."""
+    """Moduli ``k1`` of the successive transformations, with ``1 - k1``, until they vanish.
+
+    Each has as many as it would have alone; transformations with ``k1 = 0`` change no bit.
+    """
     moduli: list[tuple[Array, Array]] = []
-    k_prime = np.sqrt(complement)
-    while not moduli or np.any(moduli[-1][0] > 1e-9):
-        moduli.append(((1.0 - k_prime) / (1.0 + k_prime), 2.0 * k_prime / (1.0 + k_prime)))
-        k_prime = 2.0 * np.sqrt(k_prime) / (1.0 + k_prime)
+    k_prime, going = np.sqrt(complement), np.ones_like(complement, dtype=np.bool_)
+    while not moduli or np.any(going):
+        modulus, rest = (1.0 - k_prime) / (1.0 + k_prime), 2.0 * k_prime / (1.0 + k_prime)
+        moduli.append((np.where(going, modulus, 0.0), np.where(going, rest, 1.0)))
+        k_prime, going = 2.0 * np.sqrt(k_prime) / (1.0 + k_prime), going & (modulus > 1e-9)
     return moduli

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from debrisest.arrays import Array, IntArray
+from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.dynamics.elliptic import elliptic, quarter_period
 
 _SLOWEST = 1e-150  # rad/s, the frequency of a body that does not nutate
@@ -33,6 +33,10 @@ class Nutation:
     complement: Array
     dn2: Array
     k2_sn2: Array
+
+    def of(self, some: BoolArray) -> "Nutation":
+        """Return the nutation of some of the bodies."""
+        return Nutation(*(values[some] for values in vars(self).values()))
 
     @property
     def period(self) -> Array:

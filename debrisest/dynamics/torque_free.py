@@ -6,13 +6,14 @@ are never opposite, so that no body and no motion is singular.
 
 import numpy as np
 
-from debrisest.arrays import Array, ComplexArray
+from debrisest.arrays import Array, ComplexArray, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross
 from debrisest.dynamics.elliptic import quarter_period
 from debrisest.dynamics.nutation import Nutation, nutation
 
 _AT_REST = 1e-150  # angular momentum that stands for none
+_SAMPLES = 14  # of a period at a time
 
 
 def torque_free(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[Array, Array]:
@@ -24,38 +25,45 @@ def torque_free(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[
     shape = np.broadcast_shapes(q0.shape[:-1], rate0.shape[:-1], moments.shape[:-1])
     rate0, moments = np.broadcast_to(rate0, (*shape, 3)), np.broadcast_to(moments, (*shape, 3))
     motion = nutation(rate0, moments)
-    count = _sample_count(motion.complement)
-    samples = motion.period * np.arange(count) / count
-    asked = np.broadcast_to(times, (*shape, *times.shape))
-    both = motion.ordered_rate(np.concatenate([samples, asked], axis=-1))
-    rate = motion.reordered(both[..., count:, :])
+    rate = motion.rate(times)
     circled = np.arange(3) == motion.order[..., :1]
     reference = np.where(circled, np.copysign(1.0, rate0), 0.0)
-    turn = _precession(times, motion, rate0, moments, both[..., :count, 0])
+    turn = _precession(times, motion, rate0, moments)
     return _attitude(q0, moments * rate0, moments[..., None, :] * rate, reference, turn), rate
 
 
-def _precession(
-    times: Array, motion: Nutation, rate0: Array, moments: Array, circled: Array
-) -> Array:
+def _precession(times: Array, motion: Nutation, rate0: Array, moments: Array) -> Array:
     """Turn about the angular momentum, ``(..., time)``, rad.
 
     Its rate ``(2 T + L w_a) / (L + J_a w_a)`` is smooth and has the period of the circled
-    component ``w_a (..., sample)``, given over that period, so that its Fourier series can be
-    integrated term by term.
+    component ``w_a``, so that its Fourier series can be integrated term by term.
     """
+    counts = _sample_counts(motion.complement[..., 0])
+    harmonics = np.zeros((*counts.shape, counts.max(initial=0) // 2 + 1), dtype=np.complex128)
+    for count in np.unique(counts):
+        some = counts == count
+        speed = _speed(motion.of(some), rate0[some], moments[some], int(count))
+        harmonics[some, : count // 2 + 1] = np.fft.rfft(speed, norm="forward")
+    return _integrate_periodic(harmonics, motion.period, times)
+
+
+def _speed(motion: Nutation, rate0: Array, moments: Array, count: int) -> Array:
+    """Rate of the turn at so many times of a period, ``(..., count)``, rad/s."""
     momentum = np.maximum(np.linalg.norm(moments * rate0, axis=-1), _AT_REST)[..., None]
     twice_energy = np.sum(moments * rate0**2, axis=-1)[..., None]
     moment = np.take_along_axis(moments, motion.order[..., :1], axis=-1)
-    circled = np.abs(circled)
-    speed = (twice_energy + momentum * circled) / (momentum + moment * circled)
-    return _integrate_periodic(np.fft.rfft(speed, norm="forward"), motion.period, times)
+    circled = np.abs(motion.ordered_rate(motion.period * np.arange(count) / count)[..., 0])
+    return np.asarray((twice_energy + momentum * circled) / (momentum + moment * circled))
 
 
-def _sample_count(complement: Array) -> int:
-    """Samples of a period that bring the series below rounding: it falls as ``exp(-pi K'/K)``."""
+def _sample_counts(complement: Array) -> IntArray:
+    """Samples of a period that bring the series below rounding: it falls as ``exp(-pi K'/K)``.
+
+    Each has as many as it would have alone, of a few numbers that runs share.
+    """
     quarter = quarter_period(complement)
-    return int(np.ceil(14.0 * np.max(quarter, initial=2.0, where=np.isfinite(quarter))))
+    needed = 14.0 * np.where(np.isfinite(quarter), np.maximum(quarter, 2.0), 2.0)
+    return _SAMPLES * np.ceil(needed / _SAMPLES).astype(np.int64)
 
 
 def _integrate_periodic(harmonics: ComplexArray, period: Array, times: Array) -> Array:

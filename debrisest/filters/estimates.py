@@ -1,7 +1,7 @@
 """What every filter hands back: `Estimates`, written epoch by epoch."""
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,25 @@ class Estimates(NamedTuple):
         """Epoch of divergence, -1 if none, (run,)."""
         lost: BoolArray = np.asarray(np.isnan(self.sigma).all(-1))
         return np.where(lost.any(1), lost.argmax(1), -1)
+
+
+def joined(groups: Sequence[IntArray], found: Sequence[Estimates]) -> Estimates:
+    """Return the estimates of groups of runs, each found by itself, as those of one batch."""
+    order = np.argsort(np.concatenate(groups))
+
+    def whole(parts: Iterable[NDArray[Any]]) -> NDArray[Any]:
+        return np.concatenate(list(parts))[order]
+
+    return Estimates(
+        state=whole(one.state for one in found),
+        sigma=whole(one.sigma for one in found),
+        covariance=whole(one.covariance for one in found),
+        kept=found[0].kept,
+        nis=whole(one.nis for one in found),
+        nis_dof=whole(one.nis_dof for one in found),
+        status=whole(one.status for one in found),
+        counts={name: whole(one.counts[name] for one in found) for name in found[0].counts},
+    )
 
 
 class EstimatesWriter:

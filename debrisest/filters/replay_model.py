@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
+
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.model import add
 
@@ -16,6 +18,33 @@ class Doubt(NamedTuple):
     column: Callable[[Array, Array, Array, Array], Array]
     """(states, sensitivities, measurements, derivative) of all epochs, from 0 on, as `trajectory`
     and `rows` give them -> derivative of the measurements by the number, (run, epoch, m)."""
+
+
+class PointRows(NamedTuple):
+    """Rows of N points, r each, that depend on the first n_c errors and on three of their own.
+
+    The errors of the points follow the first n_c, in order; the rows that are no point's come last.
+    """
+
+    shown: Array
+    """(run, epoch, m)."""
+    by_point: Array
+    """By the first errors and the point's own, (run, epoch, N, r, n_c + 3)."""
+    by_rest: Array
+    """Of the other rows by the first errors, (run, epoch, m - N r, n_c)."""
+
+    def derivative(self) -> Array:
+        """Return the derivative ``(run, epoch, m, n_c + 3 N)`` by all errors."""
+        runs, epochs, points, each, own = self.by_point.shape
+        n_c, of_points = own - 3, points * each
+        result = np.zeros((runs, epochs, self.shown.shape[-1], n_c + 3 * points))
+        block = result[:, :, :of_points].reshape(runs, epochs, points, each, -1)
+        block[..., :n_c] = self.by_point[..., :n_c]
+        for i in range(points):
+            block[:, :, i, :, n_c + 3 * i : n_c + 3 * i + 3] = self.by_point[:, :, i, :, n_c:]
+        result[:, :, :of_points] = block.reshape(runs, epochs, of_points, -1)
+        result[:, :, of_points:, :n_c] = self.by_rest
+        return result
 
 
 class ReplayModel(NamedTuple):
@@ -61,6 +90,8 @@ class ReplayModel(NamedTuple):
     """(state, step in plain errors (run, n_e)) -> what `retract` limits of a step: its derivative
     (run, c, n_e), and by how much it has to change (run, c), zero where it need not."""
     doubts: tuple[Doubt, ...] = ()
+    point_rows: Callable[[Array, Array, int, IntArray], PointRows] | None = None
+    """The same as `rows`, for a model whose rows depend on few errors each."""
     select: Callable[[IntArray], "ReplayModel"] | None = None
     """The model of some runs; without it, the model is the same for all."""
 

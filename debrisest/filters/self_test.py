@@ -230,10 +230,10 @@ def lost_test(lost: BoolArray, reason: str) -> SelfTest:
 
 def _mean_limit(dof: Array | IntArray) -> Array:
     """Largest square per degree of freedom, (run,): of many, ``1 + 5 sqrt(2 / dof)``."""
-    from scipy.stats import chi2, norm
+    from scipy.special import chdtri, ndtr
 
     count = np.maximum(dof, 1)
-    return np.asarray(chi2.isf(norm.sf(_SIGMAS), count) / count)
+    return np.asarray(chdtri(count, ndtr(-_SIGMAS)) / count)
 
 
 def _relative(part: Array, whole: Array) -> Array:

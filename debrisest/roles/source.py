@@ -35,6 +35,11 @@ class SimulationPart(Part):
         """Return the datasets that parts of this kind give, of all three groups."""
         return (*cls.truths, *cls.knows, *cls.measures)
 
+    @property
+    def runs_together(self) -> int:
+        """Return how many runs it simulates for the price of a few; no result depends on it."""
+        return 1
+
     @abstractmethod
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return the new datasets; ``data`` holds those of the parts before this one."""

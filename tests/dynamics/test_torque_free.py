@@ -238,3 +238,15 @@ def test_batch_axes_broadcast_and_a_bad_run_stays_alone() -> None:
     alone_q, alone_rate = torque_free(times, q0[2], rate0[4], moments[4])
     np.testing.assert_allclose(q[2, 4], alone_q, atol=1e-14)
     np.testing.assert_allclose(rate[2, 4], alone_rate, atol=1e-14)
+
+
+def test_no_body_depends_on_those_beside_it() -> None:
+    """Near the separatrix a body needs more terms than others, which keep every bit."""
+    q0, rate0, moments = random_bodies(9, 40)
+    rate0[7], moments[7] = (1e-9, 0.1, 1e-9), (1.0, 2.0, 3.0)
+    times = np.linspace(-50.0, 80.0, 9)
+    q, rate = torque_free(times, q0, rate0, moments)
+    for i in range(40):
+        alone = torque_free(times, q0[i : i + 1], rate0[i : i + 1], moments[i : i + 1])
+        np.testing.assert_array_equal(q[i], alone[0][0])
+        np.testing.assert_array_equal(rate[i], alone[1][0])

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from debrisest.attitude import quaternion
+from debrisest.filters.replay.measured_arc import linearize, measured_arc
+from debrisest.filters.replay.replay import replay
 from debrisest.problems.stereo_pose import model as stereo_pose
 
 POINTS = 5
@@ -93,6 +95,36 @@ def test_derivatives_match_differences(slow, first):
     np.testing.assert_allclose(
         model.transition(sensitivity[:, -1], first, 6), differences(end, 29), atol=2e-6
     )
+
+
+@pytest.mark.parametrize("acceleration", [False, True])
+def test_sums_by_points_are_those_of_all_rows(experiment, acceleration):
+    test = experiment(3, 20, 0, shown=stereo_pose.Shown(acceleration=acceleration), slow=True)
+    measured = test.exact + test.model.sigma * np.random.default_rng(4).normal(
+        size=test.exact.shape
+    )
+    measured[0, 3:5, :9], measured[1, 7, 2] = np.nan, np.nan
+    arc = measured_arc(test.model, test.prior, np.tile(np.eye(29), (3, 1, 1)), measured)
+    found = linearize(test.model, arc, test.prior, 19)
+    dense = linearize(test.model._replace(point_rows=None), arc, test.prior, 19)
+    for one, other in zip(found, dense):
+        np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-13 * np.abs(other).max())
+
+
+def test_no_run_depends_on_those_beside_it(experiment):
+    """Fast and slow targets, first seen at different epochs, together and alone, to the bit."""
+    test = experiment(4, 12, 2)
+    measured, covariance = test.exact.copy(), np.tile(np.eye(29), (4, 1, 1))
+    measured[1, :2] = np.nan
+    together = replay(test.model, test.prior, covariance, measured, gate=True, keep=(5,))
+    for run in range(4):
+        one = slice(run, run + 1)
+        alone = replay(
+            test.model, test.prior[one], covariance[one], measured[one], gate=True, keep=(5,)
+        )
+        np.testing.assert_array_equal(together.state[one], alone.state)
+        np.testing.assert_array_equal(together.covariance[one], alone.covariance)
+        np.testing.assert_array_equal(together.counts["cost"][one], alone.counts["cost"])
 
 
 @pytest.mark.parametrize("shown", [stereo_pose.Shown(), stereo_pose.Shown(True, False, False)])

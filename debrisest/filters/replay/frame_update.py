@@ -8,7 +8,8 @@ from debrisest.arrays import Array, IntArray
 from debrisest.filters import weights
 from debrisest.filters.linear_algebra import scaled_inverse, scaled_solve
 from debrisest.filters.replay.gauss_newton import Solution
-from debrisest.filters.replay.measured_arc import MeasuredArc, normal_equations
+from debrisest.filters.replay.measured_arc import MeasuredArc
+from debrisest.filters.replay.normal_equations import normal_equations
 from debrisest.filters.replay_model import ReplayModel
 
 _ITERATIONS, _CONVERGED = 3, 1e-3

@@ -4,16 +4,20 @@ The cost is twice the negative logarithm of the posterior density: the normalise
 prior's error and of the residuals. Its minimum is the maximum a posteriori estimate.
 """
 
-from math import prod
 from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray
+from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.replay.normal_equations import normal_equations, point_equations
 from debrisest.filters.replay_model import ReplayModel
 
-_CHUNK = 8  # epochs whose derivatives are held at a time
+_RUNS, _EPOCHS = 20, 8
+"""Whose derivatives are held at a time, for the sake of the cache."""
+
+Place = tuple[Array, Array, int, IntArray]
+"""States, sensitivities, the epoch that these start from, and the epochs: what `rows` takes."""
 
 
 class MeasuredArc(NamedTuple):
@@ -66,18 +70,21 @@ def linearize(model: ReplayModel, arc: MeasuredArc, state: Array, last: int) -> 
     cost = (offset * gradient).sum(-1)
     information = arc.information.copy()
     residual = np.empty((len(state), last + 1, arc.measured.shape[-1]))
-    for begin in range(0, last + 1, _CHUNK):
-        part = slice(begin, min(begin + _CHUNK, last + 1))
-        predicted, derivative = model.rows(
-            states[:, part], sensitivity[:, part], 0, np.arange(part.start, part.stop)
-        )
-        residual[:, part] = arc.measured[:, part] - predicted / model.sigma
-        terms = normal_equations(
-            derivative / model.sigma[:, None], residual[:, part], arc.weight[:, part]
-        )
-        information += terms[0]
-        gradient += terms[1]
-        cost += terms[2]
+    for begin in range(0, len(state), _RUNS):
+        runs = np.arange(begin, min(begin + _RUNS, len(state)))
+        part = model.of(runs)
+        for first in range(0, last + 1, _EPOCHS):
+            epochs = np.arange(first, min(first + _EPOCHS, last + 1))
+            some = slice(begin, begin + _RUNS), slice(first, first + len(epochs))
+            residual[some], *terms = _sums(
+                part,
+                (states[some], sensitivity[some], 0, epochs),
+                arc.measured[some],
+                arc.weight[some],
+            )
+            information[some[0]] += terms[0]
+            gradient[some[0]] += terms[1]
+            cost[some[0]] += terms[2]
     residual[~arc.seen[:, : last + 1]] = 0.0
     return Linearization(
         state=state.copy(),
@@ -90,12 +97,12 @@ def linearize(model: ReplayModel, arc: MeasuredArc, state: Array, last: int) -> 
     )
 
 
-def normal_equations(
-    derivative: Array, residual: Array, weight: Array
-) -> tuple[Array, Array, Array]:
-    """``H^T W H``, ``H^T W r`` and ``r^T W r`` per run, of rows ``(run, ..., m, n_e)``."""
-    runs, rows, n_e = len(derivative), prod(residual.shape[1:]), derivative.shape[-1]
-    flat = (weight[..., None] * derivative).reshape(runs, rows, n_e)
-    weighted = (weight * residual).reshape(runs, rows, 1)
-    transposed = np.swapaxes(flat, -1, -2)
-    return transposed @ flat, (transposed @ weighted)[..., 0], (weighted**2).sum((-2, -1))
+def _sums(model: ReplayModel, at: Place, measured: Array, weight: Array) -> tuple[Array, ...]:
+    """Normalised residuals of some epochs, and their normal equations."""
+    if model.point_rows is None:
+        predicted, derivative = model.rows(*at)
+        residual = measured - predicted / model.sigma
+        return residual, *normal_equations(derivative / model.sigma[:, None], residual, weight)
+    rows = model.point_rows(*at)
+    residual = measured - rows.shown / model.sigma
+    return residual, *point_equations(rows, residual, weight, weight / model.sigma)

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from debrisest.arrays import Array, Data, IntArray
-from debrisest.filters.estimates import Estimates, EstimatesWriter
+from debrisest.arrays import Array, BoolArray, Data, IntArray
+from debrisest.filters.estimates import Estimates, EstimatesWriter, joined
 from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.replay.cost import Reference, reference_of
 from debrisest.filters.replay.frame_update import Belief, first_frame, predict, update
@@ -57,6 +57,16 @@ def replay(
     Counts are `cost`, at anchors, `cost_of_truth` at kept epochs, and `rejected`.
     """
     _require_shapes(model, prior, measured, ratio)
+    groups = _begun_together(measured)
+    if len(groups) > 1:
+        found = [
+            replay(
+                *(model.of(runs), prior[runs], covariance[runs], measured[runs], ratio, gate, keep),
+                None if reference is None else reference[runs],
+            )
+            for runs in groups
+        ]
+        return joined(groups, found)
     epochs, counts = measured.shape[1], {"cost": np.nan}
     counts |= {"rejected": 0} if gate else {}
     counts |= {} if reference is None else {"cost_of_truth": np.nan}
@@ -123,6 +133,13 @@ def anchors(first: int, epochs: int, ratio: float = RATIO) -> list[int]:
         result.append(first + round(count) - 1)
         count = max(count + 1.0, count * ratio)
     return result
+
+
+def _begun_together(measured: Array) -> list[IntArray]:
+    """Runs by the epoch of their first measurement, from which their anchors count."""
+    seen: BoolArray = np.asarray(~np.isnan(measured).all(-1))
+    first = np.where(seen.any(1), seen.argmax(1), measured.shape[1])
+    return [np.flatnonzero(first == epoch) for epoch in np.unique(first)]
 
 
 def _schedule(arc: MeasuredArc, ratio: float, also: Sequence[int]) -> list[int]:

@@ -19,6 +19,7 @@ class Replay(FilterPart):
 
     version = 3
     takes = "replay_model"
+    runs_together = 100
     kind: Literal["replay"]
     smoother: bool = False
     """Estimate from all measurements, later ones too."""

@@ -43,6 +43,7 @@ _INPUTS = (
 )
 
 _UNCERTAINTY = Uncertainty()
+_SHARED = 200  # runs that are simulated together where all are alike, for the sake of memory
 
 
 class PointingControl(SimulationPart):
@@ -115,6 +116,16 @@ class PointingControl(SimulationPart):
     store_every: Annotated[int, Field(ge=1)] = 25
     """Control steps from one stored torque to the next."""
 
+    @property
+    def _drawn(self) -> bool:
+        """Whether each run has errors of its own."""
+        return bool(self.errors == "white" or self.inertia_error or self.torque_error)
+
+    @property
+    def runs_together(self) -> int:
+        """Return how many runs share one loop."""
+        return 1 if self._drawn else _SHARED
+
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude, sections, exact pixels, and what the controller did.
 
@@ -123,8 +134,7 @@ class PointingControl(SimulationPart):
         inputs = [np.asarray(data[name], dtype=np.float64) for name in _INPUTS]
         names = tuple(str(name) for name in data["observer"])
         require_known(self.satellites, names)
-        drawn = self.errors == "white" or self.inertia_error or self.torque_error
-        if drawn or any((x != x[:1]).any() for x in inputs):
+        if self._drawn or any((x != x[:1]).any() for x in inputs):
             return _simulated(self, names, inputs, clock, draws)
         packed = ((x.shape[1:], x[0].tobytes()) for x in inputs)
         times, runs = clock.times.tobytes(), len(draws.runs)

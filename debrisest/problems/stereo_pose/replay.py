@@ -4,10 +4,10 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
-from debrisest.attitude.vectors import matrix_of_cross
+from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import transitions
-from debrisest.filters.replay_model import ReplayModel
+from debrisest.filters.replay_model import PointRows, ReplayModel
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose.doubts import doubts
 from debrisest.problems.stereo_pose.model import (
@@ -35,11 +35,13 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
     points = known.points
     centre = transitions(known.leader, known.steps)
     back = np.linalg.inv(centre)
+
+    def at_epochs(states: Array, turning: Array, first: int, epochs: IntArray) -> PointRows:
+        return point_rows(known, states, turning, centre[epochs] @ back[first], epochs)
+
     return ReplayModel(
         trajectory=lambda state, first, last: chart.propagate(known, state, first, last),
-        rows=lambda states, turning, first, epochs: rows(
-            known, states, turning, centre[epochs] @ back[first], epochs
-        ),
+        rows=lambda *at: _dense(at_epochs(*at)),
         transition=lambda turning, first, last: transition(
             turning, centre[last] @ back[first], points
         ),
@@ -57,7 +59,12 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
         excess=chart.excess,
         doubts=doubts(known),
         displace=lambda state, error: chart.displace(state, error, points),
+        point_rows=at_epochs,
     )
+
+
+def _dense(rows: PointRows) -> tuple[Array, Array]:
+    return rows.shown, rows.derivative()
 
 
 def transition(turning: Array, centre: Array, points: int) -> Array:
@@ -73,35 +80,35 @@ def transition(turning: Array, centre: Array, points: int) -> Array:
     return result
 
 
-def rows(
+def point_rows(
     known: StereoGeometry, states: Array, turning: Array, centre: Array, epochs: IntArray
-) -> tuple[Array, Array]:
-    """Measurements ``(run, epoch, m)`` and their derivative ``(run, epoch, m, n_e)``.
+) -> PointRows:
+    """Measurements ``(run, epoch, m)`` and their derivatives.
 
-    The derivative is by the plain errors of the epoch at which ``turning (run, epoch, 6, 8)`` and
+    These are by the plain errors of the epoch at which ``turning (run, epoch, 6, 8)`` and
     ``centre (epoch, 6, 6)`` start; ``states (run, epoch, n)`` are those of ``epochs``.
     """
-    points, batch = known.points, states.shape[:2]
+    (runs, count), points, each = states.shape[:2], known.points, len(known.rows)
     point, velocity = points_in_view(states, points)
     shown = stereo.measure(point, velocity, known.baseline)[..., known.rows]
     by_view = stereo.jacobian(point, velocity, known.baseline)[..., known.rows, :]
-    turn = quaternion.to_matrix(states[..., Q])[:, :, None]
-    spin = matrix_of_cross(states[..., RATE])[:, :, None]
-    arm = matrix_of_cross(point - states[:, :, None, POSITION])
-    by_arm = by_view[..., :3] + by_view[..., 3:] @ spin
-    by_turn = np.concatenate([-by_view[..., 3:] @ arm, -by_arm @ arm], axis=-1)
-    derivative = np.zeros((*batch, points, len(known.rows), 14 + 3 * points))
-    derivative[..., :6] = by_view @ centre[:, None]
-    derivative[..., _TURN] = by_turn @ turning[:, :, None]
-    by_body = by_arm @ turn
-    for i in range(points):
-        derivative[:, :, i, :, 14 + 3 * i : 17 + 3 * i] = by_body[:, :, i]
-    predicted = shown.reshape(*batch, points * len(known.rows))
-    flat = derivative.reshape(*predicted.shape, derivative.shape[-1])
+    arm = (point - states[:, :, None, POSITION])[..., None, :]
+    by_view = by_view.reshape(runs, count, points * each, 6)
+    by_velocity = by_view[..., 3:]
+    by_arm = by_view[..., :3] + by_velocity @ matrix_of_cross(states[..., RATE])
+    by_turn = np.empty((runs, count, points, each, 6))
+    by_turn[..., :3] = cross(arm, by_velocity.reshape(runs, count, points, each, 3))
+    by_turn[..., 3:] = cross(arm, by_arm.reshape(runs, count, points, each, 3))
+    derivative = np.empty((runs, count, points * each, 17))
+    derivative[..., :6] = by_view @ centre
+    derivative[..., _TURN] = by_turn.reshape(runs, count, points * each, 6) @ turning
+    derivative[..., 14:] = by_arm @ quaternion.to_matrix(states[..., Q])
+    by_point = derivative.reshape(runs, count, points, each, 17)
+    predicted = shown.reshape(runs, count, points * each)
     if not known.shown.acceleration:
-        return predicted, flat
-    acceleration, by_start = _acceleration_rows(known, states, turning, epochs)
-    return np.concatenate([predicted, acceleration], -1), np.concatenate([flat, by_start], -2)
+        return PointRows(predicted, by_point, np.empty((runs, count, 0, 14)))
+    acceleration, by_rest = _acceleration_rows(known, states, turning, epochs)
+    return PointRows(np.concatenate([predicted, acceleration], -1), by_point, by_rest)
 
 
 def _acceleration_rows(
@@ -114,7 +121,7 @@ def _acceleration_rows(
     k = states[..., K]
     by_rate = inertia_ratios.acceleration_by_rate(rate_t, k) @ back
     by_errors = np.concatenate([by_rate, by_rate @ matrix_of_cross(total)], axis=-1)
-    derivative = np.zeros((*states.shape[:2], 3, 14 + 3 * known.points))
+    derivative = np.zeros((*states.shape[:2], 3, 14))
     derivative[..., _TURN] = by_errors @ turning
     derivative[..., chart.K_ERROR] += inertia_ratios.acceleration_by_ratios(rate_t, k)
     return inertia_ratios.angular_acceleration(rate_t, k), derivative

@@ -18,7 +18,7 @@ class Stage(NamedTuple):
 
 
 STAGES = {
-    "simulate": Stage("simulate", simulate.inputs, simulate.run),
+    "simulate": Stage("simulate", simulate.inputs, simulate.run, simulate.runs_together),
     "recover": Stage("recover", recover.inputs, recover.run),
     "filter": Stage("filter", filter.inputs, filter.run, filter.runs_together),
     "assess": Stage("assess", assess.inputs, assess.run),

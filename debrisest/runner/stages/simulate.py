@@ -23,6 +23,11 @@ def inputs(case: Case, _: str) -> dict[str, Any]:
     return {"version": VERSION, "case": case.draws, **told, **parts}
 
 
+def runs_together(case: Case, _: str) -> int:
+    """Return how many runs are simulated at the least cost in one call."""
+    return max((part.runs_together for part in case.scenario.simulation.values()), default=1)
+
+
 def run(case: Case, _: str, data: Data) -> Data:
     """Return what is known and measured of the runs whose numbers are in ``data``."""
     scenario, clock, runs = case.scenario, case.clock, data["run"].astype(int)
