@@ -8,7 +8,7 @@ statistic is where that of a consistent estimator lies with a probability of 95 
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.assessment.chi_square import quantile, upper_quantile
 from debrisest.filters.linear_algebra import solve
 
@@ -33,7 +33,7 @@ def normalized_square(error: Array, covariance: Array) -> Array:
     return np.where(sound, (weighted * solved).sum(-1), np.nan)
 
 
-def chart_free(cost_of_truth: Array, cost_of_estimate: Array, n: int) -> Array:
+def chart_free(cost_of_truth: Array, cost_of_estimate: Array, n: IntArray | int) -> Array:
     """``W = [C(truth) - C(map)] / n``, whose mean is 1 for a maximum a posteriori estimate.
 
     Costs are twice negative logarithms of the posterior density, up to the same constant; ``n`` is

@@ -25,7 +25,7 @@ def torque_free(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[
     shape = np.broadcast_shapes(q0.shape[:-1], rate0.shape[:-1], moments.shape[:-1])
     rate0, moments = np.broadcast_to(rate0, (*shape, 3)), np.broadcast_to(moments, (*shape, 3))
     motion = nutation(rate0, moments)
-    rate = motion.rate(times)
+    rate = motion.reordered(motion.ordered_rate(times))
     circled = np.arange(3) == motion.order[..., :1]
     reference = np.where(circled, np.copysign(1.0, rate0), 0.0)
     turn = _precession(times, motion, rate0, moments)

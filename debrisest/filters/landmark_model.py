@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.filters.doubt import Doubt
 
 
 class Rows(NamedTuple):
@@ -45,15 +46,6 @@ class Observations(NamedTuple):
         """Return those of some runs and epochs."""
         parts: list[Any] = [values[index] for values in self]
         return Observations(*parts)
-
-
-class Doubt(NamedTuple):
-    """A parameter that a model holds at zero, and what it means that the data pull it away."""
-
-    reason: str
-    """With ``{value}``, in sigmas, and ``{size}``, what it would be."""
-    scale: float
-    """From radians and the like to the unit of the reason."""
 
 
 class LandmarkModel(NamedTuple):

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from debrisest.arrays import Array, IntArray
+from debrisest.filters.doubt import Doubt
 
 
 class ScanModel(NamedTuple):
@@ -18,6 +19,8 @@ class ScanModel(NamedTuple):
     * `points(x, k)` predicts the point that each sensor shows at epoch k, (run, ..., sensor, d).
       Where a sensor cannot predict one (NaN), its scan is not used.
     * `points_jacobian(x, k)` (run, ..., sensor, d, n) is its derivative at x.
+    * `doubted(x, k)` (run, ..., sensor, d, doubt) is the derivative of `points` by what the model
+      takes for granted, the `doubts`.
     * `select(runs)` gives the model of some runs; without it, the model is the same for all.
     """
 
@@ -30,6 +33,8 @@ class ScanModel(NamedTuple):
     noise: Array
     """Covariance of a point, (d, d)."""
     error_names: tuple[str, ...]
+    doubts: tuple[Doubt, ...] = ()
+    doubted: Callable[[Array, int], Array] | None = None
     select: Callable[[IntArray], "ScanModel"] | None = None
 
     def of(self, runs: IntArray) -> "ScanModel":

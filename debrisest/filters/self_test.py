@@ -22,6 +22,12 @@ _SIGMAS_OF_SCORES = 4.0
 """Of a normal distribution, once in 16 000 times."""
 
 
+_TOLD = 0.8
+"""Part of the stated information that views must hold."""
+_CROWDED = 0.6
+"""Share of near pairs where clutter is dense in the middle; of pieces that stay it is 0.73."""
+
+
 class Verdict(Outcome):
     """Whether the errors of a run are as large as it says; the codes are those of `doubt`."""
 
@@ -129,23 +135,42 @@ def missed_test(matched: Array, looked: Array, expected: float) -> SelfTest:
     )
 
 
-def crowd_test(crowded: Array, looked: Array) -> SelfTest:
-    """Test how often (run,) a filter that takes the nearest point for certain had to choose."""
+def crowd_test(mistaken: Array, looked: Array) -> SelfTest:
+    """Test how often (run,) a filter that takes the nearest point for certain is wrong in that.
+
+    ``mistaken`` sums the probabilities of it by the distances of all points within the gate. Points
+    that are not the target's do not move with it: views of which a share w is wrong tell
+    (1 - w)^2 of what they are taken to tell.
+    """
     return SelfTest(
-        crowded / np.maximum(looked, 1),
-        0.01,
-        "in a share of {value} of the views more than one point lay within the gate, and the "
-        "nearest was taken for certain; weigh them instead",
+        mistaken / np.maximum(looked, 1),
+        1.0 - _TOLD**0.5,
+        "in a share of {value} of the views the nearest point, which was taken for certain, is "
+        "likely another's, and above {limit} that makes errors larger; weigh the points instead",
     )
 
 
-def white_test(product: Array, square: Array) -> SelfTest:
-    """Test whether innovations depend on those before them: sums (run,) of products, of squares."""
+def agitation_test(sigmas: Array) -> SelfTest:
+    """Test whether innovations go with those before, by as many sigmas (run,), as process noise has
+    it that is larger than stated."""
     return SelfTest(
-        np.abs(product) / np.sqrt(np.where(square > 0.0, square, np.nan)),
-        _SIGMAS,
+        sigmas,
+        _SIGMAS_OF_SCORES,
         "innovations follow those before them by {value} sigma, {limit} at most by chance: "
         "something moves or errs in a way that the model does not have",
+    )
+
+
+def companion_test(near: Array, ring: Array) -> SelfTest:
+    """Test whether what is beside the target stays: pairs (run,) of following frames that are near
+    each other, and those in a ring of the same area, where new clutter is as frequent."""
+    pairs = np.maximum(near + ring, 1)
+    return SelfTest(
+        near / pairs,
+        _CROWDED + _SIGMAS * np.sqrt(0.25 / pairs),
+        "points beside the target stay where they are from frame to frame ({value} of the close "
+        "pairs, {limit} at most by chance): they are no clutter but pieces that fly along, one of "
+        "which may be followed instead; track them too",
     )
 
 
@@ -184,15 +209,6 @@ def parts_test(part: Array, whole: Array, part_spread: Array, whole_spread: Arra
         _mean_limit(dof),
         "the first part of the data and all of it disagree: the squared difference is {value} of "
         "what is stated, at most {limit} by chance",
-    )
-
-
-def gauge_test(before: Array, after: Array) -> SelfTest:
-    """Test the information along what nothing can show, ``(run,)`` before and after the data."""
-    return SelfTest(
-        after / before,
-        2.0,
-        "the data cannot show how the body axes lie, yet its information grew {value} times",
     )
 
 

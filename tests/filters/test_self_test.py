@@ -11,9 +11,9 @@ from debrisest.filters.self_test import (
     bend_test,
     block_test,
     cost_test,
-    gauge_test,
     judged,
     lost_test,
+    missed_test,
     parts_test,
     rival_test,
     score_test,
@@ -60,7 +60,7 @@ def test_a_part_agrees_with_the_whole_unless_one_of_them_is_wrong() -> None:
 def test_the_worst_verdict_decides_and_gives_its_reasons() -> None:
     tests = [
         cost_test(np.array([1.0, 9.0, 9.0, 9.0]) * 1000, np.full(4, 1000)),
-        gauge_test(np.ones(4), np.array([1.0, 5.0, 1.0, 1.0])),
+        missed_test(np.array([9, 0, 9, 9]), np.full(4, 10), 0.9),
         rival_test(np.array([np.inf, np.inf, 3.0, 3.0]), 20.0, "two fit"),
         lost_test(np.array([False, False, False, True]), "nothing fits"),
         bend_test(np.full(4, np.nan)),
@@ -69,7 +69,7 @@ def test_the_worst_verdict_decides_and_gives_its_reasons() -> None:
     assert found.code.tolist() == [0, 1, 2, 3]
     assert found.sentence[0] == "consistent"
     assert found.sentence[1].startswith("errors may be larger than stated: the cost")
-    assert "grew 5 times" in found.sentence[1]
+    assert "in a share of 1 of the views" in found.sentence[1]
     assert found.sentence[2:].tolist() == ["ambiguous: two fit", "lost: nothing fits"]
 
 

@@ -157,3 +157,27 @@ def test_known_detections_have_a_nis_and_the_bound_knows_the_truth(given):
     for part in (LinearisedAtTruth(kind="linearised_at_truth"), associate(linearised="truth")):
         with pytest.raises(ValueError, match="truth"):
             part.run(MODEL, blind)
+
+
+def test_a_bound_that_its_own_errors_leave_says_so(given):
+    bound = LinearisedAtTruth(kind="linearised_at_truth")
+    assert bound.run(MODEL, alone(given)).status.tolist() == ["consistent"] * RUNS
+    away = given.truth.copy()
+    away[1] += 0.5 * np.arange(EPOCHS)[:, None] ** 2
+    found = bound.run(MODEL, alone(given)._replace(truth=away))
+    assert found.counts["doubt"].tolist() == [0, Verdict.LARGER, 0]
+    assert "this is no bound" in found.status[1]
+
+
+def test_pieces_that_stay_beside_the_target_are_told(given):
+    rng = np.random.default_rng(3)
+    epochs = 150
+    truth = np.stack([np.tile([1.0, 0.0], (epochs, 1))] * RUNS)
+    own = points(truth, 0) + 0.5 * rng.normal(size=(RUNS, epochs, 2, 2))
+    crowd = rng.uniform(-8.0, 8.0, size=(2, RUNS, epochs, 2, 2))
+    stays = points(truth, 0) + [6.0, -5.0] + 0.5 * rng.normal(size=crowd.shape)
+    for beside, doubt in ((crowd + own, 0), (stays, Verdict.LARGER)):
+        scans = np.stack([own, *beside], axis=-2)
+        seen = given._replace(measured=scans, clock=Clock.regular(2.0 * epochs - 2.0, 2.0))
+        found = associate().run(MODEL, seen._replace(state=truth[:, 0] + 0.1))
+        assert found.counts["doubt"].tolist() == [doubt] * RUNS

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from pydantic import ValidationError
+from scipy.stats import chi2
 
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
@@ -113,6 +114,21 @@ def test_batch_bound_and_filter_give_errors_in_order(data) -> None:
     free = problem(gauge_sigma_deg=5)
     online = assessed(data, free, run(data, free, LandmarkFilter(kind="landmark_filter")))
     assert np.median(online["aligned_points"][:, -1]) < 0.05
+
+
+def test_the_truth_costs_as_much_more_as_there_are_numbers(data) -> None:
+    chosen, batch = problem(), LandmarkBatch(kind="landmark_batch", **WINDOWS)
+    counts = run(data, chosen, batch).counts
+    assert np.isnan(counts["cost"][:, :-1]).all()
+    numbers = counts["cost_numbers"]
+    assert numbers.tolist() == [14 + 3 * len(POINTS)] * 3
+    excess = (counts["cost_of_truth"] - counts["cost"])[:, -1]
+    assert (excess > 0.0).all()
+    low, high = chi2.interval(1.0 - 1e-4, numbers.sum())
+    assert low < excess.sum() < high
+    shifted = data | {"true_rate_b": data["true_rate_b"] + 1e-4}
+    wrong = run(shifted, chosen, batch).counts
+    assert ((wrong["cost_of_truth"] - wrong["cost"])[:, -1] > chi2.isf(1e-6, numbers)).all()
 
 
 def test_sigmas_are_named_like_the_estimates(data) -> None:

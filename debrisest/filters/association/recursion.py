@@ -6,15 +6,15 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
+from debrisest.filters.association.companions import pairs, unclaimed
+from debrisest.filters.association.evidence import Pull, corrected, nothing_yet, predicted
 from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh, update
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.runs import take
 from debrisest.filters.scan_model import ScanModel
 
-COUNTED = ("rejected", "validated", "looked", "matched", "crowded", "product", "square")
-"""What is counted at every epoch: `_Seen`, and products of innovations with those before them."""
-_MEMORY = 0.8
-"""By which the innovations before are weighed from one epoch to the next."""
+COUNTED = ("rejected", "validated", "looked", "matched", "mistaken", "near", "ring")
+"""What is counted at every epoch: as in `_Seen`, and pairs of detections beside the target."""
 
 
 class AssociationSettings(NamedTuple):
@@ -42,10 +42,10 @@ class _Seen(NamedTuple):
     rejected: IntArray
     validated: IntArray
     looked: IntArray
-    """Sensors that showed anything, of those how many something in the gate, and how many more than
-    one point."""
+    """Sensors that showed anything, and of those how many something in the gate."""
     matched: IntArray
-    crowded: IntArray
+    mistaken: Array
+    """Probability that the nearest point is another's, summed over the sensors."""
 
     def plus(self, judged: Judged, d: int) -> "_Seen":
         """Add the detections of further sensors."""
@@ -62,8 +62,26 @@ class _Seen(NamedTuple):
             self.validated + inside.sum(-1),
             self.looked + judged.present[:, 0].any(-1).sum(-1),
             self.matched + (inside > 0).sum(-1),
-            self.crowded + (inside > 1).sum(-1),
+            self.mistaken + _mistaken(distance).sum(-1),
         )
+
+
+def _mistaken(distance: Array) -> Array:
+    """Probability that of squared distances (..., detection) the least is not the target's."""
+    ratio = np.exp(0.5 * (np.min(distance, axis=-1, keepdims=True, initial=np.inf) - distance))
+    return np.where(np.isfinite(distance).any(-1), 1.0 - 1.0 / np.nansum(ratio, axis=-1), 0.0)
+
+
+class _Look(NamedTuple):
+    """What an epoch shows beside the state."""
+
+    seen: _Seen
+    product: Array
+    """Of innovations and what they would be for each doubt, and the information of it,
+    (run, doubt + 1)."""
+    information: Array
+    others: Array
+    """Detections that are likely no track's, (run, sensor, detection, d)."""
 
 
 def filtered(
@@ -74,68 +92,88 @@ def filtered(
     settings: AssociationSettings,
     keep: Sequence[int],
 ) -> Estimates:
-    """Return the estimates of track 0; `state` (run, track, n), else as `associated`."""
+    """Return the estimates of track 0; `state` (run, track, n), else as `associated`.
+
+    The counts hold sums over the epochs too, the `Scores` by their names.
+    """
     names, epochs, counts = model.error_names, scans.shape[1], dict.fromkeys(COUNTED, 0.0)
     start = state[:, 0], covariance[:, 0]
     writer = EstimatesWriter(names, *start, epochs, keep, counts, totals=["repairs"])
     tracks, nominal, going = Tracks(state, covariance), state, writer.runs
-    before = np.zeros((len(state), scans.shape[2], scans.shape[-1]))
+    pull, scores = nothing_yet(model, *start)
+    before = np.full((len(state), *scans.shape[2:]), np.nan)
     with np.errstate(all="ignore"):
         for k in range(epochs):
             if len(going) < len(nominal):
                 model, tracks, nominal = model.of(going), take(tracks, going), nominal[going]
                 scans, settings, before = scans[going], settings.of(going), before[going]
+                pull = take(pull, going)
             if len(going) == 0:
                 break
             if k > 0:
-                tracks, nominal = _predict(model, tracks, nominal, k - 1)
+                tracks, pull, nominal = _predict(model, tracks, pull, nominal, k - 1)
             if settings.truth is not None:
                 nominal = settings.truth[:, None, k]
-            tracks, seen, combined = _look(model, tracks, nominal, scans[:, k], settings, k)
-            product, before = combined * before, _MEMORY * before + combined
+            tracks, pull, look = _look(model, tracks, pull, nominal, scans[:, k], settings, k)
+            scores.add(writer.runs, look.product, look.information)
+            (near, ring), before = pairs(before, look.others, model.noise), look.others
             if settings.relinearise > 0 and (k + 1) % settings.relinearise == 0:
                 nominal = tracks.state
             target = tracks.state[:, 0], tracks.covariance[:, 0]
-            figures = {"product": product.sum((1, 2)), "square": (product**2).sum((1, 2))}
-            going = writer.record(k, *target, seen._asdict() | figures)
-    return writer.estimates()
+            going = writer.record(k, *target, look.seen._asdict() | {"near": near, "ring": ring})
+    found = writer.estimates()
+    return found._replace(counts=found.counts | scores._asdict())
 
 
-def _predict(model: ScanModel, tracks: Tracks, nominal: Array, k: int) -> tuple[Tracks, Array]:
+def _predict(
+    model: ScanModel, tracks: Tracks, pull: Pull, nominal: Array, k: int
+) -> tuple[Tracks, Pull, Array]:
     moved = model.process(nominal, k)
     transition = np.broadcast_to(model.process_jacobian(nominal, k), tracks.covariance.shape)
     transposed = np.swapaxes(transition, -2, -1)
     lag = (tracks.state - nominal)[..., None, :] @ transposed
     covariance = transition @ tracks.covariance @ transposed
     covariance = 0.5 * (covariance + np.swapaxes(covariance, -2, -1)) + model.process_noise
-    return Tracks(moved + lag[..., 0, :], covariance), moved
+    pull = predicted(pull, transition[:, 0], model.process_noise)
+    return Tracks(moved + lag[..., 0, :], covariance), pull, moved
 
 
 def _look(
     model: ScanModel,
     tracks: Tracks,
+    pull: Pull,
     nominal: Array,
     scan: Array,
     settings: AssociationSettings,
     k: int,
-) -> tuple[Tracks, _Seen, Array]:
-    """Update by all sensors; `scan` is (run, sensor, detection, d).
-
-    The last is the combined innovation of the target's track, (run, sensor, d).
-    """
+) -> tuple[Tracks, Pull, _Look]:
+    """Update by all sensors; `scan` is (run, sensor, detection, d)."""
     shown = model.points(nominal, k)
     h = np.broadcast_to(model.points_jacobian(nominal, k), (*shown.shape, nominal.shape[-1]))
     nothing = np.zeros(len(scan), dtype=np.int64)
-    seen, combined = _Seen(nothing.astype(np.float64), *[nothing] * 6), []
+    zero = nothing.astype(np.float64)
+    seen = _Seen(zero, nothing, nothing, nothing, nothing, nothing, zero)
+    doubted, numbers = _doubted(model, nominal, k), pull.state.shape[-1]
+    product, information = np.zeros((2, len(scan), numbers))
+    others = np.full(scan.shape, np.nan)
     for group in _groups(shown.shape[-2], settings.stacked):
         lag = tracks.state - nominal
         predicted = shown[:, :, group] + (h[:, :, group] @ lag[:, :, None, :, None])[..., 0]
         innovation = scan[:, None, group] - predicted[..., None, :]
         part = Scan(innovation, h[:, :, group])
-        tracks, judged = update(tracks, part, model.noise, settings.gate, settings.weigh)
+        tracks, made, judged = update(tracks, part, model.noise, settings.gate, settings.weigh)
         seen = seen.plus(judged, shown.shape[-1])
-        combined.append(judged.combined[:, 0])
-    return tracks, seen, np.concatenate(combined, axis=1)
+        pull, along, told = corrected(pull, made, doubted[:, group])
+        product, information = product + along, information + told
+        others[:, group] = unclaimed(innovation, judged)
+    return tracks, pull, _Look(seen, product, information, others)
+
+
+def _doubted(model: ScanModel, nominal: Array, k: int) -> Array:
+    """Derivative (run, sensor, d, doubt) of what the target shows; zero of what is not seen."""
+    if model.doubted is None:
+        return np.zeros((*model.points(nominal[:, 0], k).shape, 0))
+    return np.nan_to_num(model.doubted(nominal[:, 0], k))
 
 
 def _groups(sensors: int, stacked: bool) -> list[slice]:

@@ -42,8 +42,23 @@ class Judged(NamedTuple):
     distance: Array
     """Squared, infinite where not validated."""
     probability: Array
-    combined: Array
-    """Combined innovation of each sensor, (run, track, sensor, d), zero where it has none."""
+
+
+class Correction(NamedTuple):
+    """How an update moves tracks, by the m components of its sensors; (run, track, ...)."""
+
+    innovation: Array
+    """Combined, (..., m), zero where there is none."""
+    total: Array
+    """Covariance of an innovation that is certain, S, (..., m, m)."""
+    own: Array
+    """The part of it that is the tracks', H P H^T."""
+    shown: Array
+    """H of what is used, zero elsewhere, (..., m, n)."""
+    trusted: Array
+    """Probability that the target's detection is among the validated, (..., m)."""
+    gain: Array
+    """K, transposed, (..., m, n)."""
 
 
 class _Moments(NamedTuple):
@@ -59,7 +74,7 @@ class _Moments(NamedTuple):
 
 def update(
     tracks: Tracks, scan: Scan, noise: Array, gate: float, weigh: Weigh
-) -> tuple[Tracks, Judged]:
+) -> tuple[Tracks, Correction, Judged]:
     """Return the moments of the posterior mixture of which detection is whose.
 
     All sensors share one gain, K of the stacked H. A sensor s whose detection is right with the
@@ -77,9 +92,8 @@ def update(
     shown = h @ tracks.covariance[:, :, None] @ np.swapaxes(h, -2, -1)
     judged, innovation = _judge(scan.innovation, usable, shown + noise, gate, weigh)
     moments = _moments(innovation, judged.probability)
-    judged = judged._replace(combined=moments.mean)
     used = np.asarray(judged.valid.any(-1))[..., None, None]
-    return _moved(tracks, np.where(used, h, 0.0), shown, noise, moments), judged
+    return *_moved(tracks, np.where(used, h, 0.0), shown, noise, moments), judged
 
 
 def _judge(
@@ -92,7 +106,7 @@ def _judge(
     distance = (nu * white).sum(-1)
     valid = present & (distance <= gate)
     distance = np.where(valid, distance, np.inf)
-    return Judged(present, valid, distance, weigh(distance), nu), nu
+    return Judged(present, valid, distance, weigh(distance)), nu
 
 
 def _moments(innovation: Array, probability: Array) -> _Moments:
@@ -104,22 +118,28 @@ def _moments(innovation: Array, probability: Array) -> _Moments:
     return _Moments(detected, mean[..., 0, :], spread + rest)
 
 
-def _moved(tracks: Tracks, h: Array, shown: Array, noise: Array, moments: _Moments) -> Tracks:
+def _moved(
+    tracks: Tracks, h: Array, shown: Array, noise: Array, moments: _Moments
+) -> tuple[Tracks, Correction]:
     b = moments.detected[..., None, None]
     stacked, trusted = _stacked(h), _stacked(b * h)
     cross = stacked @ tracks.covariance
     every = np.broadcast_to(noise, shown.shape)
-    total = cross @ np.swapaxes(stacked, -2, -1) + _block_diagonal(every)
+    own = cross @ np.swapaxes(stacked, -2, -1)
+    total = own + _block_diagonal(every)
     gain = solve(total, cross)
-    correction = moments.mean.reshape(*stacked.shape[:2], 1, -1) @ gain
+    innovation = moments.mean.reshape(stacked.shape[:-1])
+    correction = innovation[..., None, :] @ gain
     kept = np.eye(h.shape[-1]) - np.swapaxes(trusted, -2, -1) @ gain
     spread = _block_diagonal(b * every + b * (1.0 - b) * shown + moments.spread)
     covariance = np.swapaxes(kept, -2, -1) @ tracks.covariance @ kept
     covariance = covariance + np.swapaxes(gain, -2, -1) @ spread @ gain
-    return Tracks(
+    moved = Tracks(
         state=tracks.state + correction[..., 0, :],
         covariance=0.5 * (covariance + np.swapaxes(covariance, -2, -1)),
     )
+    each = np.broadcast_to(b[..., 0], moments.mean.shape).reshape(innovation.shape)
+    return moved, Correction(innovation, total, own, stacked, each, gain)
 
 
 def _stacked(h: Array) -> Array:

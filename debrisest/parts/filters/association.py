@@ -1,21 +1,25 @@
 """Filters of unlabelled detections that a scenario can name, and their bound."""
 
+from collections.abc import Iterator
 from typing import Annotated, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
+from debrisest.filters.association.evidence import score_sigma
 from debrisest.filters.association.single import associated, jointly_associated
 from debrisest.filters.association.weights import Validation, inverse_unit_ball, unit_ball
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.scan_model import ScanModel
 from debrisest.filters.self_test import (
     SelfTest,
+    agitation_test,
+    companion_test,
     crowd_test,
     innovation_test,
     missed_test,
+    score_test,
     told,
-    white_test,
 )
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given, Positive
@@ -30,7 +34,7 @@ Probability = Annotated[float, Field(gt=0, le=1)]
 class _Validating(FilterPart):
     """Keys of the filters that have to tell the target from clutter."""
 
-    version = 3
+    version = 4
     takes = "scan_model"
     runs_together = 200
     gate: Positive = 9.21
@@ -90,9 +94,8 @@ class AssociationFilter(_Validating):
             truth=given.known_truth if self.linearised == "truth" else None,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(
-            found, self.validation, certain=self.method == "nearest", once=self._every(1.0) == 0
-        )
+        certain, once = self.method == "nearest", self._every(1.0) == 0
+        return _unlabelled(model, found, self.validation, certain, once)
 
     def _every(self, step: float) -> int:
         if self.linearised == "estimate":
@@ -113,7 +116,7 @@ class JointAssociation(_Validating):
             stacked=self.stacked,
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        return _unlabelled(found, self.validation)
+        return _unlabelled(model, found, self.validation)
 
 
 class KnownAssociation(FilterPart):
@@ -131,27 +134,32 @@ class KnownAssociation(FilterPart):
             method="known",
             keep=kept_epochs(self.keep_s, given.clock),
         )
-        tests = [innovation_test(found.nis, found.nis_dof), _white(found)]
+        tests = [innovation_test(found.nis, found.nis_dof), *_scores(model, found)]
         return told(counting(found, "repairs"), tests)
 
 
 def _unlabelled(
-    found: Estimates, validation: Validation, certain: bool = False, once: bool = False
+    model: ScanModel,
+    found: Estimates,
+    validation: Validation,
+    certain: bool = False,
+    once: bool = False,
 ) -> Estimates:
     """Without NIS, which is not chi-square where detections are chosen by their distance.
 
     That only makes it smaller: what is too large for a chi-square says so all the same. The choice
     may be taken for `certain`, the model be linearised `once`.
     """
-    count = {name: found.counts[name].sum(-1) for name in ("looked", "matched", "crowded")}
+    count = {name: values.sum(-1) for name, values in found.counts.items()}
     likely = validation.detection_probability * validation.passing(2)
     tests = [
         missed_test(count["matched"], count["looked"], likely),
         innovation_test(found.nis, found.nis_dof),
-        _white(found),
+        companion_test(count["near"], count["ring"]),
+        *_scores(model, found),
     ]
     if certain:
-        tests.append(crowd_test(count["crowded"], count["looked"]))
+        tests.append(crowd_test(count["mistaken"], count["looked"]))
     if once:
         tests.append(SelfTest(np.ones(len(found.state)), 0.0, _LINEARISED_ONCE))
     without = counting(found, "repairs", "validated")._replace(
@@ -160,8 +168,15 @@ def _unlabelled(
     return told(without, tests)
 
 
-def _white(found: Estimates) -> SelfTest:
-    return white_test(found.counts["product"].sum(-1), found.counts["square"].sum(-1))
+def _scores(model: ScanModel, found: Estimates) -> Iterator[SelfTest]:
+    """What the innovations go with: each doubt, and more process noise than the model has."""
+    counts = found.counts
+    with np.errstate(all="ignore"):
+        size = counts["score"] / counts["information"]
+        sigma = score_sigma(counts["square"], counts["information"]) / counts["information"]
+    for i, doubt in enumerate(model.doubts):
+        yield score_test(size[:, i], sigma[:, i], doubt.reason, doubt.scale)
+    yield agitation_test(size[:, -1] / sigma[:, -1])
 
 
 def counting(found: Estimates, *names: str) -> Estimates:

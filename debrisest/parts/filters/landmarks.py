@@ -6,15 +6,17 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.filters.estimates import Estimates
-from debrisest.filters.landmark_model import LandmarkModel, core_of, split
-from debrisest.filters.landmarks.batch_start import Batch, batch_problem
+from debrisest.filters.landmark_model import LandmarkModel, core_of, points_of, split
+from debrisest.filters.landmarks.against_truth import costs
+from debrisest.filters.landmarks.batch_start import Batch, Problem, batch_problem
 from debrisest.filters.landmarks.growing_windows import Window
 from debrisest.filters.landmarks.landmark_filter import Annealing, landmark_filter
 from debrisest.filters.landmarks.self_tests import self_tests
 from debrisest.filters.landmarks.update import Belief, UpdateSettings
-from debrisest.filters.landmarks.whole_arc import whole_arc, window_ends
+from debrisest.filters.landmarks.whole_arc import Arc, whole_arc, window_ends
 from debrisest.filters.self_test import SelfTest, cost_test, told
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given, NonNegative, Positive
@@ -25,7 +27,7 @@ _FEWEST_FRAMES = 5
 
 
 class _LandmarkFilter(FilterPart):
-    version = 3
+    version = 4
     takes = "landmark_model"
     iterations: Annotated[int, Field(ge=1)] = 3
     """Linearisations of a frame at most."""
@@ -89,6 +91,7 @@ class LandmarkBatch(_LandmarkFilter):
         with np.errstate(all="ignore"):
             arc = whole_arc(task, window_ends(batch.windows[-1].last, last, kept))
             tests = self_tests(task, arc)
+            compared = {} if given.truth is None else _compared(task, arc, given.truth)
         first = arc.anchors[0]
         found = landmark_filter(
             model,
@@ -103,6 +106,7 @@ class LandmarkBatch(_LandmarkFilter):
         found = found._replace(
             counts=found.counts
             | {"restarts": arc.found.restarts, "fit": arc.found.best.found.ratio}
+            | compared
         )
         return told(found, tests)
 
@@ -156,6 +160,17 @@ def _windows(ends: Iterable[tuple[float, float]], clock: Clock) -> list[Window]:
         for end, spacing in ends
     ]
     return list(dict.fromkeys(windows))
+
+
+def _compared(task: Problem, arc: Arc, truth: Array) -> Data:
+    """Costs at the last epoch, and how many numbers they are of."""
+    core, points = core_of(task.model, truth[:, 0]), points_of(task.model, truth[:, 0])
+    own, true, numbers = costs(task, arc, core, points)
+    result: Data = {"cost_numbers": numbers}
+    for name, value in (("cost", own), ("cost_of_truth", true)):
+        result[name] = np.full(truth.shape[:2], np.nan)
+        result[name][:, -1] = value
+    return result
 
 
 def _innovations(found: Estimates) -> SelfTest:

@@ -10,7 +10,8 @@ import numpy as np
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import clohessy_wiltshire
-from debrisest.filters.landmark_model import Doubt, LandmarkModel, Rows
+from debrisest.filters.doubt import Doubt
+from debrisest.filters.landmark_model import LandmarkModel, Rows
 from debrisest.problems.camera_range import model as motion
 from debrisest.problems.camera_range.model import CameraRangeGeometry
 from debrisest.problems.camera_range.projection import landmark_model

@@ -19,6 +19,7 @@ from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import perturbed_orbit
+from debrisest.filters.doubt import Doubt
 from debrisest.filters.scan_model import ScanModel
 from debrisest.sensors import pinhole
 
@@ -63,6 +64,8 @@ def scan_model(known: ObserverGeometry) -> ScanModel:
         points_jacobian=lambda state, k: points_jacobian(known, state, k),
         noise=known.pixel_variance * np.eye(2),
         error_names=tuple(names),
+        doubts=doubts(known),
+        doubted=lambda state, k: doubted(known, state, k),
         select=lambda runs: scan_model(known.of(runs)),
     )
 
@@ -112,6 +115,28 @@ def points_jacobian(known: ObserverGeometry, state: Array, k: int) -> Array:
         for s in range(bias.shape[-2]):
             result[..., s, :, 6 + 3 * s : 9 + 3 * s] = by_bias[..., s, :, :]
     result[..., :3] = by_point @ turn
+    return result
+
+
+def doubts(known: ObserverGeometry) -> tuple[Doubt, ...]:
+    """Return what is taken for granted: the focal length, and attitudes that are not estimated."""
+    focal = Doubt("the focal length seems {value} sigma off, by {size:+.2g} of it", 1.0)
+    cameras = range(0 if known.with_bias else known.observer.shape[2])
+    said = "the attitude of camera {0} seems {{value}} sigma off, by {{size:+.2g}} mrad"
+    return (focal, *(Doubt(said.format(s + 1), 1e3) for s in cameras for _ in range(3)))
+
+
+def doubted(known: ObserverGeometry, state: Array, k: int) -> Array:
+    """Return the derivative (run, ..., observer, 2, doubt) of `points` by the `doubts`."""
+    point = _in_camera(known, state, k)
+    cameras = point.shape[-2]
+    result = np.zeros((*point.shape[:-1], 2, 1 if known.with_bias else 1 + 3 * cameras))
+    result[..., 0] = _pixels(known, point)
+    if not known.with_bias:
+        by_point = pinhole.derivative(point, _like(known.scale[:, None], state))
+        by_attitude = -by_point @ matrix_of_cross(point)
+        for s in range(cameras):
+            result[..., s, :, 1 + 3 * s : 4 + 3 * s] = by_attitude[..., s, :, :]
     return result
 
 

@@ -59,7 +59,7 @@ def diagnostics(data: Data) -> Data:
     if "rejected" in data:
         result["rejected"] = per_dimension(data["rejected"], data["rejected"] + used)
     if "cost_of_truth" in data:
-        errors = len(data["error_name"])
-        result["w"] = chart_free(data["cost_of_truth"], data["cost"], errors)
-        result["w_dof"] = np.where(np.isfinite(result["w"]), errors, 0)
+        numbers = data.get("cost_numbers", np.array([len(data["error_name"])]))[:, None]
+        result["w"] = chart_free(data["cost_of_truth"], data["cost"], numbers)
+        result["w_dof"] = np.where(np.isfinite(result["w"]), numbers, 0)
     return result

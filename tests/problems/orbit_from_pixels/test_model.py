@@ -181,3 +181,30 @@ def test_errors_of_a_perfect_and_of_a_lost_estimate(two_observers) -> None:
     by_hand = np.array([0.0, 36e6 / 4e6]) + 25.0 / 100.0
     assert found["nees"][:2, 469].tolist() == pytest.approx((by_hand / 6).tolist())
     assert np.isnan(found["nees"][:2, :469]).all()
+
+
+def test_what_is_taken_for_granted_moves_the_points_as_differences_say(two_observers) -> None:
+    scene = two_observers(3)
+    problem = scene.problem()
+    truth = problem.truth(scene.data)[:, 80]
+    found = problem.model(scene.data, scene.CLOCK).doubted(truth, 80)
+
+    def shown(growth: float, turn: np.ndarray) -> np.ndarray:
+        """Pixels with a longer focal length and cameras that are turned, both observers alike."""
+        known = Rotation.from_quat(scene.data["true_q_ic"].reshape(-1, 4), scalar_first=True)
+        true = (known * Rotation.from_rotvec(-turn)).as_quat(scalar_first=True)
+        changed = scene.data | {
+            "focal_px": scene.data["focal_px"] * (1.0 + growth),
+            "known_q_ic": true.reshape(scene.data["true_q_ic"].shape),
+        }
+        return problem.model(changed, scene.CLOCK).points(truth, 80)
+
+    none, size = np.zeros(3), 1e-6
+    focal = (shown(size, none) - shown(-size, none)) / (2.0 * size)
+    np.testing.assert_allclose(found[..., 0], focal, rtol=1e-5, atol=1e-3)
+    for axis, turn in enumerate(size * np.eye(3)):
+        expected = (shown(0.0, turn) - shown(0.0, -turn)) / (2.0 * size)
+        for s in range(2):
+            own = found[..., 1 + 3 * s + axis]
+            np.testing.assert_allclose(own[:, s], expected[:, s], rtol=1e-5, atol=1e-3)
+            assert not own[:, 1 - s].any()

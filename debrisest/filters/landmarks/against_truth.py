@@ -1,0 +1,23 @@
+"""How much more the truth costs than the solution, by which simulations judge it in any chart."""
+
+import numpy as np
+
+from debrisest.arrays import Array, IntArray
+from debrisest.filters.landmarks.batch_start import Problem
+from debrisest.filters.landmarks.cost import Unknowns, cost
+from debrisest.filters.landmarks.whole_arc import Arc
+
+
+def costs(task: Problem, arc: Arc, core: Array, points: Array) -> tuple[Array, Array, IntArray]:
+    """Return the costs (run,) of the solution and of the truth, and how many numbers are estimated.
+
+    The truth is a ``core (run, n)`` at epoch 0 and ``points (run, N, 3)``. Both costs are those of
+    the frames without what the solution leaves out.
+    """
+    best = arc.found.best
+    placed = best.at.placed[..., None]
+    true = Unknowns(task.model.parameters(core), np.where(placed, points, 0.0), best.at.placed)
+    frames = np.arange(arc.anchors[-1].epoch + 1)
+    known = task.model, arc.observed, best.prior
+    own, other = (cost(*known, at, frames, False).value for at in (best.at, true))
+    return own, other, task.parameters.shape[-1] + 3 * best.at.placed.sum(-1)

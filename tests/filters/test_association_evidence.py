@@ -1,0 +1,163 @@
+"""What innovations say against a model, from likelihoods of all the data and from counting."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from debrisest.filters.association.companions import pairs
+from debrisest.filters.association.evidence import score_sigma
+from debrisest.filters.association.single import associated
+from debrisest.filters.association.weights import Validation
+from debrisest.filters.doubt import Doubt
+from debrisest.filters.scan_model import ScanModel
+from debrisest.filters.self_test import agitation_test, companion_test, crowd_test, score_test
+
+RUNS, EPOCHS = 400, 60
+F = np.array([[1.0, 1.0], [0.0, 1.0]])
+H = np.stack([np.eye(2), [[1.0, 0.5], [0.3, -1.0]]])
+INPUT = np.array([0.5, 1.0])
+Q = 1e-4 * np.outer(INPUT, INPUT)
+R = np.diag([0.3, 0.5])
+P0 = np.diag([4.0, 0.04])
+COLUMNS = np.random.default_rng(5).normal(size=(EPOCHS, 2, 2, 2))
+"""Derivative (epoch, sensor, d, doubt) of what is seen."""
+
+MODEL = ScanModel(
+    process=lambda x, _: x @ F.T,
+    process_jacobian=lambda _x, _k: F,
+    process_noise=Q,
+    points=lambda x, _: (H @ x[..., None, :, None])[..., 0],
+    points_jacobian=lambda _x, _k: H,
+    noise=R,
+    error_names=("x", "v"),
+    doubts=(Doubt("a", 1.0), Doubt("b", 1.0)),
+    doubted=lambda x, k: np.broadcast_to(COLUMNS[k], (*x.shape[:-1], 2, 2, 2)),
+)
+
+
+def covariance_of_all_data():
+    """Dense (time sensor d), by adding up what each cause does to every measurement."""
+    rows = [np.concatenate(H) @ np.linalg.matrix_power(F, k) for k in range(EPOCHS)]
+    start = np.concatenate(rows)
+    total = start @ P0 @ start.T + np.kron(np.eye(2 * EPOCHS), R)
+    for j in range(1, EPOCHS):
+        kick = np.concatenate([np.zeros((4, 2))] * j + rows[: EPOCHS - j])
+        total += kick @ Q @ kick.T
+    return total
+
+
+def drawn(seed, acceleration=1.0, doubt=(0.0, 0.0)):
+    """Measurements (run, time, sensor, 1, 2) of motions that begin about zero."""
+    rng = np.random.default_rng(seed)
+    state = rng.normal(size=(RUNS, 2)) * P0.diagonal() ** 0.5
+    shown = []
+    for k in range(EPOCHS):
+        noise = rng.normal(size=(RUNS, 2, 2)) * R.diagonal() ** 0.5
+        shown.append(MODEL.points(state, k) + COLUMNS[k] @ doubt + noise)
+        state = state @ F.T + 1e-2 * acceleration * rng.normal(size=(RUNS, 1)) * INPUT
+    return np.stack(shown, axis=1)[:, :, :, None]
+
+
+def followed(scans, model=MODEL):
+    start = np.zeros((RUNS, 2)), np.tile(P0, (RUNS, 1, 1))
+    return associated(model, *start, scans, Validation(), method="known").counts
+
+
+def sigmas(counts):
+    return counts["score"] / score_sigma(counts["square"], counts["information"])
+
+
+def test_scores_are_those_of_the_likelihood_of_all_data() -> None:
+    scans = drawn(0)
+    counts, dense = followed(scans), covariance_of_all_data()
+    columns = COLUMNS.reshape(-1, 2)
+    expected = scans.reshape(RUNS, -1) @ np.linalg.solve(dense, columns)
+    np.testing.assert_allclose(counts["score"][:, :2], expected, rtol=1e-8, atol=1e-8)
+    information = (columns * np.linalg.solve(dense, columns)).sum(0)
+    expected = np.tile(information, (RUNS, 1))
+    np.testing.assert_allclose(counts["information"][:, :2], expected, rtol=1e-9)
+
+
+def test_restless_innovations_are_those_of_a_filter_with_more_process_noise() -> None:
+    scans = drawn(1)
+
+    def predictions(q):
+        state, spread, made = np.zeros((RUNS, 2)), P0, []
+        for k in range(EPOCHS):
+            if k > 0:
+                state, spread = state @ F.T, F @ spread @ F.T + q
+            for s in range(2):
+                total = H[s] @ spread @ H[s].T + R
+                made.append((state @ H[s].T, total))
+                gain = spread @ H[s].T @ np.linalg.inv(total)
+                state = state + (scans[:, k, s, 0] - made[-1][0]) @ gain.T
+                spread = spread - gain @ H[s] @ spread
+        return made
+
+    score = np.zeros(RUNS)
+    seen = scans.reshape(RUNS, -1, 2)
+    for i, (own, other) in enumerate(zip(predictions(Q), predictions(100.0 * Q))):
+        innovation = np.linalg.solve(own[1], (seen[:, i] - own[0]).T).T
+        score += ((other[0] - own[0]) * innovation).sum(-1)
+    np.testing.assert_allclose(followed(scans)["score"][:, -1], score, rtol=1e-7, atol=1e-9)
+
+
+def test_a_right_model_has_normal_scores() -> None:
+    found = sigmas(followed(drawn(2)))
+    assert np.abs(found.mean(0)).max() < 4.0 / RUNS**0.5
+    assert found.std(0).min() > 0.85 and found.std(0).max() < 1.15
+    assert np.abs(found).max() < 4.5
+
+
+def test_each_wrong_model_is_told_by_its_own_score() -> None:
+    restless = sigmas(followed(drawn(3, acceleration=10.0)))
+    assert agitation_test(restless[:, -1]).failed.mean() > 0.95
+    counts = followed(drawn(4, doubt=(0.0, 0.5)))
+    size = counts["score"] / counts["information"]
+    sigma = size / sigmas(counts)
+    assert score_test(size[:, 1], sigma[:, 1], "b").failed.mean() > 0.95
+    np.testing.assert_allclose(size[:, 1].mean(), 0.5, rtol=0.1)
+    assert not score_test(size[:, 0], 3.0 * sigma[:, 0], "a").failed.any()
+
+
+def test_calm_that_is_greater_than_stated_is_no_doubt() -> None:
+    assert not agitation_test(sigmas(followed(drawn(5, acceleration=0.0)))[:, -1]).failed.any()
+
+
+def share_of_pairs(shown):
+    """Test of detections (time, run, sensor, detection, 2) with unit noise."""
+    counted = [pairs(*each, np.eye(2)) for each in pairwise(shown)]
+    return companion_test(*np.sum(counted, axis=0))
+
+
+@pytest.mark.parametrize("width", [6.0, 10.0, 200.0])
+@pytest.mark.parametrize("count", [2, 10])
+def test_clutter_that_is_new_in_every_frame_is_not_told(width: float, count: int) -> None:
+    clutter = np.random.default_rng(6).uniform(-width, width, size=(101, 100, 2, count, 2))
+    assert not share_of_pairs(clutter).failed.any()
+
+
+@pytest.mark.parametrize("count", [0, 2])
+def test_pieces_that_stay_are_told_also_among_clutter(count: int) -> None:
+    rng = np.random.default_rng(7)
+    place = 10.0 * rng.normal(size=(100, 2, 2, 2))
+    pieces = place + rng.normal(size=(301, 100, 2, 2, 2))
+    clutter = rng.uniform(-20.0, 20.0, size=(301, 100, 2, count, 2))
+    assert share_of_pairs(np.concatenate([pieces, clutter], axis=-2)).failed.mean() > 0.95
+
+
+@pytest.mark.parametrize(("count", "told"), [(12, True), (1, False)])
+def test_the_nearest_is_wrong_as_often_as_the_distances_say(count: int, told: bool) -> None:
+    rng = np.random.default_rng(7)
+    own = rng.normal(size=(RUNS, EPOCHS, 2, 1, 2)) * R.diagonal() ** 0.5
+    clutter = rng.uniform(-5.0, 5.0, (RUNS, EPOCHS, 2, count, 2))
+    scans = np.concatenate([own, clutter], axis=-2)
+    still = MODEL._replace(process_noise=np.zeros((2, 2)), doubts=(), doubted=None)
+    start = np.zeros((RUNS, 2)), np.tile(1e-12 * np.eye(2), (RUNS, 1, 1))
+    found = associated(still, *start, scans, Validation(gate=20.0), method="nearest").counts
+    square = (scans**2 / R.diagonal()).sum(-1)
+    wrong = (np.argmin(square, axis=-1) > 0).mean()
+    np.testing.assert_allclose(found["mistaken"].sum() / found["looked"].sum(), wrong, rtol=0.05)
+    test = crowd_test(found["mistaken"].sum(-1), found["looked"].sum(-1))
+    assert test.failed.mean() == float(told)
