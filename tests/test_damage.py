@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 
 
-def test_damage_is_told_and_mended(swept: Path, shipped: Path) -> None:
+def test_damage_is_told_and_mended(tmp_path: Path, shipped: Path) -> None:
     script = runpy.run_path(str(shipped.parent / "scripts" / "damage.py"))
-    found = script["tally"](swept, seed=5, count=2, files=1, page=2**15)
+    config, out = script["reduced"](tmp_path), tmp_path / "out"
+    script["run"]("sweep", config, "--out", out)
+    found = script["tally"](config, out, seed=5, count=2, files=1, page=2**15)
     assert {how for _, how in found} == {"all"}, found
     assert found["structure", "all"] == found["structure under a seal", "all"] == 2
 

@@ -277,6 +277,28 @@ def test_what_is_no_dataset_of_ours_is_damage_even_under_a_seal(
     assert store.inspect(file).condition is Condition.DAMAGED
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("plugins", 5), ("inputs", "[" * 9999), ("datasets", None), ("runs", "3"), ("runs", 10**40),
+     ("first_run", 1e6), ("scenario", {}), ("software", ["numpy"])],
+)  # fmt: skip
+def test_a_label_that_no_step_writes_is_damage_even_under_a_seal(
+    name: str, value: object, swept: Path, reference: Path, small: Path, sweep: Callable, cli: Any
+) -> None:
+    path = swept / "small" / "slow" / "filter-wahba.000000.h5"
+    with path.open("rb") as file:
+        label = sealed.read_label(file)
+        content = sealed.read_image(file, label)
+    path.write_bytes(sealed.sealed(content, label.attributes | {name: value}))
+    for command in ("status", "table"):
+        assert cli(command, small, "--out", swept).exit_code == 0
+    result = sweep(small, swept)
+    assert result.exit_code == 0
+    assert str(path) in result.stderr
+    table = (swept / "small" / "tables.csv").read_bytes()
+    assert table == (reference / "small" / "tables.csv").read_bytes()
+
+
 @pytest.mark.parametrize("how", ["truncated", "flipped", "emptied"])
 def test_a_damaged_file_is_computed_again_with_a_notice(
     how: str, swept: Path, reference: Path, small: Path, sweep: Callable
