@@ -39,7 +39,7 @@ EXTREME = (
 ELSEWHERE = ("tables", "runs", "duration_s", "step_s")
 """Keys whose large values mean long work."""
 LIMIT_S, ROOM_BYTES = 20, 3 * 2**30
-BARE = re.compile(r"^(?!.* \(\w+\) with )\W*\w*(Error|Warning)\b|mistake of debrisest")
+BARE = re.compile(r"(Error|Warning): ")
 
 
 def leaves(value: Any, path: KeyPath = (), kind: str = "") -> Iterator[tuple[KeyPath, str]]:

@@ -404,6 +404,16 @@ def test_a_foreign_file_is_refused_and_left_alone(
     assert content is None or path.read_bytes() == content
 
 
+@pytest.mark.parametrize("start", [b"", b"\x89HDF\r\n\x1a\n"])
+def test_what_is_far_too_long_is_foreign_without_being_read(start: bytes, tmp_path: Path) -> None:
+    """A terabyte, which takes no room on the disk."""
+    path = tmp_path / "simulate.000000.h5"
+    with path.open("wb") as file:
+        file.write(start)
+        file.truncate(2**40)
+    assert store.inspect(path).condition is Condition.FOREIGN
+
+
 def test_a_missing_file(tmp_path: Path) -> None:
     assert store.inspect(tmp_path / "none.h5").condition is Condition.MISSING
 

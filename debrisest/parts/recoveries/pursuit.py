@@ -16,7 +16,7 @@ Count = Annotated[int, Field(ge=1)]
 class PursuitKeys(Keys):
     """How a lasso on a Fourier dictionary is posed and solved."""
 
-    dictionary_ratio: Annotated[float, Field(ge=1)] = Field(
+    dictionary_ratio: Annotated[float, Field(ge=1, le=1000)] = Field(
         2.0, description="atoms per sample; 1 is the plain transform"
     )
     penalty: Positive = Field(description="lambda of the lasso")
