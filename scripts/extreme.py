@@ -89,6 +89,7 @@ def outcome(scenario: Any, folder: Path) -> tuple[str, list[str]]:
     """Return whether a scenario was refused or run, and what was wrong with how it went."""
     path = folder / "now.yaml"
     path.write_text(text_of(scenario))
+    signal.signal(signal.SIGVTALRM, _stop)
     signal.setitimer(signal.ITIMER_VIRTUAL, LIMIT_S)
     out = Path(tempfile.mkdtemp(dir=folder))
     ended = "refused"
@@ -127,7 +128,6 @@ def main() -> int:
     parser.add_argument("--worlds", type=int, default=24)
     parser.add_argument("--count", type=int, default=2000, help="of accepted values, at most")
     asked = parser.parse_args()
-    signal.signal(signal.SIGVTALRM, _stop)
     resource.setrlimit(resource.RLIMIT_AS, (ROOM_BYTES, ROOM_BYTES))
     counts, done = Counter[str](), set[tuple[str, str]]()
     with tempfile.TemporaryDirectory() as name:

@@ -1,5 +1,6 @@
-"""A small share of what ``scripts/damage.py`` and ``scripts/mutate.py`` do."""
+"""A small share of what ``damage.py``, ``mutate.py`` and ``extreme.py`` of ``scripts/`` do."""
 
+import random
 import runpy
 from pathlib import Path
 
@@ -21,3 +22,13 @@ def test_texts_at_random_are_read_or_refused(kind: str, tmp_path: Path, shipped:
     (tmp_path / "now").mkdir()
     found = script["tally"](kind, 5, 6, tmp_path / "now")
     assert found == {"all": 6}
+
+
+def test_extreme_values_are_refused_or_run_through_all_stages(
+    tmp_path: Path, shipped: Path
+) -> None:
+    script = runpy.run_path(str(shipped.parent / "scripts" / "extreme.py"))
+    every = list(script["variants"](2, set(), tmp_path))
+    random.Random(3).shuffle(every)
+    wrong = {said: script["outcome"](scenario, tmp_path)[1] for said, scenario in every[:8]}
+    assert not {said: what for said, what in wrong.items() if what}

@@ -69,7 +69,7 @@ def is_foreign(file: BinaryIO) -> bool:
     file.seek(0)
     start = file.read(len(_HDF5_SIGNATURE))
     if start == _HDF5_SIGNATURE:
-        content = start + file.read(_MOST)
+        content = start + file.read(min(size, _MOST))
         return FORMAT.encode() not in content and _is_complete(content, size)
     if _HDF5_SIGNATURE.startswith(start):
         return False
@@ -79,8 +79,9 @@ def is_foreign(file: BinaryIO) -> bool:
 
 def is_older(file: BinaryIO) -> bool:
     """Return whether a file without a label is of a version that had none."""
+    size = file.seek(0, os.SEEK_END)
     file.seek(0)
-    return _BEFORE_SEALS in file.read(_MOST)
+    return _BEFORE_SEALS in file.read(min(size, _MOST))
 
 
 def _is_complete(content: bytes, size: int) -> bool:
