@@ -1,18 +1,22 @@
 """Damage files of results at random and count what the commands make of it.
 
-``python scripts/damage.py [SEED] [COUNT]`` sweeps the small scenario of the tests, damages one file
-at a time (bytes, whole pages, the structure as h5py edits it), and runs ``status``, ``table`` and
-``sweep`` on it, each within two seconds of CPU. It prints, for every kind of damage, how many there
-were, and how many ended in a trace, a hang, or wrong tables before the sweep or after it.
+``python scripts/damage.py [SEED] [COUNT]`` sweeps one case of the small scenario of the tests,
+damages three files (COUNT times each: bytes, a bit, the end, the structure as h5py edits it, also
+under a new seal; then every page), and runs ``status``, ``table`` and ``sweep`` after each, within
+two seconds of CPU and 64 MB. It prints, for every kind of damage, how many there were, and how many
+ended in a trace, a hang, or wrong tables before the sweep or after it.
 """
 
+import faulthandler
 import io
+import resource
 import signal
 import sys
 import tempfile
+import traceback
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import redirect_stderr, redirect_stdout, suppress
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +25,10 @@ import numpy as np
 
 from debrisest.cli import app
 from debrisest.results.sealed import read_image, read_label, sealed
+from debrisest.scenario.document import parse, text_of
 
 CONFIG = Path(__file__).parent.parent / "tests" / "scenarios" / "small.yaml"
-PAGE, LIMIT_S = 4096, 2
+PAGE, LIMIT_S, ROOM_BYTES = 4096, 2, 64 * 2**20
 HANG = "hang"
 Damage = Callable[[Path], object]
 
@@ -83,7 +88,7 @@ def _resealing(rng: np.random.Generator) -> Damage:
                 edit(opened, str(rng.choice(list(opened))), "format")
         else:
             key = str(rng.choice(list(attributes)))
-            value = (None, 7.5, "other", "", [], {}, -1, True)[int(rng.integers(8))]
+            value = ODD[int(rng.integers(len(ODD)))]
             attributes |= {key: value}
             if value is None:
                 del attributes[key]
@@ -97,6 +102,24 @@ def _replace(file: Any, name: str, value: Any) -> None:
     file[name] = value
 
 
+ODD = (
+    None,
+    7.5,
+    "other",
+    "",
+    [],
+    {},
+    -1,
+    0,
+    True,
+    10**30,
+    float("nan"),
+    "[]",
+    "{}",
+    "1",
+    "[" * 9999,
+)
+"""Values for an attribute; None takes it away."""
 STRUCTURE: list[Callable[[Any, str, str], object]] = [
     lambda file, name, _: file.pop(name),
     lambda file, name, _: file.move(name, f"{name}_moved"),
@@ -134,6 +157,7 @@ def run(*arguments: object) -> tuple[str, str]:
     except TimeoutError:
         return "", HANG
     except Exception:
+        traceback.print_exc()
         return "", "trace"
     finally:
         signal.setitimer(signal.ITIMER_VIRTUAL, 0)
@@ -144,12 +168,35 @@ def _stop(*_: object) -> None:
     raise TimeoutError
 
 
+def reduced(folder: Path) -> Path:
+    """Write the small scenario with one case, one estimator and one table; return its path."""
+    value = parse(CONFIG.read_text(), CONFIG.name)[0].value
+    del value["estimators"]["wahba"], value["cases"]["fast"], value["tables"]["means"]
+    del value["tables"]["published"], value["tables"]["layout"][0], value["tables"]["layout"][1]
+    path = folder / CONFIG.name
+    path.write_text(text_of(value))
+    return path
+
+
+@contextmanager
+def limited() -> Iterator[None]:
+    """Refuse memory far beyond what a command takes, and end where HDF5 never comes back."""
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + ROOM_BYTES, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
+        faulthandler.cancel_dump_traceback_later()
+
+
 def tally(
-    out: Path, seed: int, count: int, files: int, page: int = PAGE
+    config: Path, out: Path, seed: int, count: int, files: int, page: int = PAGE
 ) -> Counter[tuple[str, str]]:
     """Return how many damages of each kind ended how; ``out`` holds whole results before."""
     rng = np.random.default_rng(seed)
-    table = out / "small" / "tables.csv"
+    table = out / config.stem / "tables.csv"
     right, found = table.read_bytes(), Counter[tuple[str, str]]()
     there = sorted(out.rglob("slow/*.h5"))
     for path in (there[index] for index in rng.permutation(len(there))[:files]):
@@ -158,19 +205,20 @@ def tally(
             with suppress(TypeError, ValueError, KeyError, OSError, RuntimeError):
                 damage(path)
             found[kind, "all"] += 1
-            found.update((kind, how) for how in _outcomes(out, table, right))
+            faulthandler.dump_traceback_later(60, exit=True)
+            found.update((kind, how) for how in _outcomes(config, out, table, right))
             path.write_bytes(content)
     return found
 
 
-def _outcomes(out: Path, table: Path, right: bytes) -> Iterator[str]:
+def _outcomes(config: Path, out: Path, table: Path, right: bytes) -> Iterator[str]:
     """Yield what went wrong: before the sweep a table may have fewer cells, but no wrong one."""
     some = ("--out", out)
-    ended = [run(command, CONFIG, *some)[1] for command in ("status", "table")]
+    ended = [run(command, config, *some)[1] for command in ("status", "table")]
     cells = set(table.read_bytes().splitlines())
     if not {line for line in cells if b"slow" in line} <= set(right.splitlines()):
         yield "wrong before"
-    ended.append(run("sweep", CONFIG, *some, "--jobs", 1, "--quiet")[1])
+    ended.append(run("sweep", config, *some, "--jobs", 1, "--quiet")[1])
     yield from filter(None, ended)
     if table.read_bytes() != right:
         yield "wrong"
@@ -180,9 +228,11 @@ def main() -> None:
     """Print the counts of all kinds."""
     seed, count = (int(text) for text in [*sys.argv[1:], "1", "40"][:2])
     with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "out"
-        run("sweep", CONFIG, "--out", out, "--jobs", 1)
-        found = tally(out, seed, count, files=3)
+        config, out = reduced(Path(folder)), Path(folder) / "out"
+        for command in ("sweep", "status", "table"):
+            run(command, config, "--out", out)
+        with limited():
+            found = tally(config, out, seed, count, files=3)
     for kind in dict.fromkeys(kind for kind, _ in found):
         print(kind, {how: number for (of, how), number in found.items() if of == kind})
 

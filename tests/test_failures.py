@@ -1,5 +1,6 @@
 """A bad run is counted and named, and never takes the others down."""
 
+import math
 from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
@@ -150,6 +151,39 @@ def test_a_check_misses_the_cells_that_are_not_there(
     assert cli("table", small, "--out", swept, "--check").exit_code == 1
 
 
+@pytest.mark.parametrize(
+    ("compute", "told"),
+    [
+        (lambda: np.exp(np.full(3, 1e3)), "overflow encountered in exp"),
+        (lambda: np.zeros(2) / np.zeros(2), "invalid value encountered in divide"),
+        (lambda: np.linalg.inv(np.zeros((2, 2))), "singular matrix"),
+        (lambda: math.exp(1e6), "math range error"),
+    ],
+)
+def test_numbers_that_do_not_work_out_are_told_with_part_and_keys(
+    compute: Callable, told: str, small: Path, tmp_path: Path, sweep: Callable,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.setattr(FirstSamples, "start", lambda *_: compute())
+    result = sweep(small, tmp_path / "out", *ONE)
+    assert result.exit_code == 1
+    (line,) = (line for line in result.stderr.splitlines() if "run 1 failed" in line)
+    assert "estimators.triad.start (first_samples) with samples: 5, variance: " in line
+    assert f"its numbers do not work out ({told}); a value is too large or too small" in line
+    assert "Error:" not in line
+
+
+def test_too_little_memory_is_told_with_part_and_keys(
+    small: Path, tmp_path: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(FirstSamples, "start", lambda *_: np.zeros((2**50, 2)))
+    result = sweep(small, tmp_path / "out", *ONE)
+    assert result.exit_code == 1
+    (line,) = (line for line in result.stderr.splitlines() if "no memory" in line)
+    assert "estimators.triad.start (first_samples) with samples: 5, variance: " in line
+    assert not list((tmp_path / "out").rglob("filter*"))
+
+
 def no_room(*_: Any, **__: Any) -> None:
     raise OSError(28, "No space left on device")
 
@@ -160,7 +194,7 @@ def test_a_file_that_cannot_be_written(
     monkeypatch.setattr(store, "write", no_room)
     result = sweep(small, tmp_path / "out", *ONE)
     assert result.exit_code == 1
-    assert "simulate, runs 0-2 failed: OSError: [Errno 28] No space left" in result.stderr
+    assert "simulate, runs 0-2 failed: No space left on device; the same" in result.stderr
 
 
 def test_an_old_file_does_not_hide_a_step_that_failed(

@@ -277,6 +277,28 @@ def test_what_is_no_dataset_of_ours_is_damage_even_under_a_seal(
     assert store.inspect(file).condition is Condition.DAMAGED
 
 
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("plugins", 5), ("inputs", "[" * 9999), ("datasets", None), ("runs", "3"), ("runs", 10**40),
+     ("first_run", 1e6), ("scenario", {}), ("software", ["numpy"])],
+)  # fmt: skip
+def test_a_label_that_no_step_writes_is_damage_even_under_a_seal(
+    name: str, value: object, swept: Path, reference: Path, small: Path, sweep: Callable, cli: Any
+) -> None:
+    path = swept / "small" / "slow" / "filter-wahba.000000.h5"
+    with path.open("rb") as file:
+        label = sealed.read_label(file)
+        content = sealed.read_image(file, label)
+    path.write_bytes(sealed.sealed(content, label.attributes | {name: value}))
+    for command in ("status", "table"):
+        assert cli(command, small, "--out", swept).exit_code == 0
+    result = sweep(small, swept)
+    assert result.exit_code == 0
+    assert str(path) in result.stderr
+    table = (swept / "small" / "tables.csv").read_bytes()
+    assert table == (reference / "small" / "tables.csv").read_bytes()
+
+
 @pytest.mark.parametrize("how", ["truncated", "flipped", "emptied"])
 def test_a_damaged_file_is_computed_again_with_a_notice(
     how: str, swept: Path, reference: Path, small: Path, sweep: Callable
@@ -380,6 +402,16 @@ def test_a_foreign_file_is_refused_and_left_alone(
         assert "--out" in result.stderr
     assert path.exists()
     assert content is None or path.read_bytes() == content
+
+
+@pytest.mark.parametrize("start", [b"", b"\x89HDF\r\n\x1a\n"])
+def test_what_is_far_too_long_is_foreign_without_being_read(start: bytes, tmp_path: Path) -> None:
+    """A terabyte, which takes no room on the disk."""
+    path = tmp_path / "simulate.000000.h5"
+    with path.open("wb") as file:
+        file.write(start)
+        file.truncate(2**40)
+    assert store.inspect(path).condition is Condition.FOREIGN
 
 
 def test_a_missing_file(tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ FORMAT = "debrisest checkpoint"
 _SEAL = struct.Struct("<32sQ24s")
 _MARK = b"debrisest checkpoint end"
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
-_PART = 2**20
+_PART, _MOST = 2**20, 2**28
+"""Of a file without a label, how much is read at once and looked at, in bytes."""
 _BEFORE_SEALS = b"text_checksum"
 """An attribute of the files of versions that had no seal."""
 
@@ -68,24 +69,25 @@ def is_foreign(file: BinaryIO) -> bool:
     file.seek(0)
     start = file.read(len(_HDF5_SIGNATURE))
     if start == _HDF5_SIGNATURE:
-        content = start + file.read()
-        return FORMAT.encode() not in content and _is_complete(content)
+        content = start + file.read(min(size, _MOST))
+        return FORMAT.encode() not in content and _is_complete(content, size)
     if _HDF5_SIGNATURE.startswith(start):
         return False
-    rest = iter(lambda: file.read(_PART), b"")
-    return any(part.strip(b"\0") for part in chain((start,), rest))
+    rest = (file.read(_PART) for _ in range(0, min(size, _MOST), _PART))
+    return size > _MOST or any(part.strip(b"\0") for part in chain((start,), rest))
 
 
 def is_older(file: BinaryIO) -> bool:
     """Return whether a file without a label is of a version that had none."""
+    size = file.seek(0, os.SEEK_END)
     file.seek(0)
-    return _BEFORE_SEALS in file.read()
+    return _BEFORE_SEALS in file.read(min(size, _MOST))
 
 
-def _is_complete(content: bytes) -> bool:
+def _is_complete(content: bytes, size: int) -> bool:
     """Return whether an HDF5 file is at least as long as its head says."""
     end = content[28:36] if content[8:9] in (b"\x02", b"\x03") else content[40:48]
-    return len(content) >= max(48, int.from_bytes(end, "little"))
+    return size >= max(48, int.from_bytes(end, "little"))
 
 
 def _label(text: bytes) -> Label | None:

@@ -175,9 +175,9 @@ def _read(path: Path, numbers: bool = True) -> tuple[Checkpoint, bytes]:
             return Checkpoint(Condition.OTHER_VERSION, label.attributes), b""
         try:
             require_told(label.attributes)
-            image = read_image(file, label) if numbers else b""
         except ValueError:
-            image = None
+            return Checkpoint(Condition.DAMAGED), b""
+        image = read_image(file, label) if numbers else b""
     condition = Condition.DAMAGED if image is None else Condition.WHOLE
     return Checkpoint(condition, label.attributes), image or b""
 

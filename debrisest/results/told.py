@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Container, Mapping
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -43,11 +44,19 @@ def require_told(attributes: Mapping[str, Any]) -> None:
             raise ValueError(f"{name} is missing")
     for name in _TYPES.keys() & attributes.keys():
         value = attributes[name]
-        value = json.loads(value) if _TYPES[name] is dict else value
-        if type(value) is not _TYPES[name]:
+        found = _of_json(value) if _TYPES[name] is dict else value
+        if type(found) is not _TYPES[name]:
             raise ValueError(f"{name} is {value!r}")
-    if attributes.get("runs", 1) < 1:
-        raise ValueError("it has no runs")
+    runs, told = attributes.get("runs", 1), json.loads(attributes["datasets"])
+    if runs < 1 or told.get("run", f"number {runs}") != f"number {runs}":
+        raise ValueError("its runs are others than it says")
+
+
+def _of_json(text: Any) -> Any:
+    """Return what a text (JSON) tells, or nothing where there is none."""
+    with suppress(ValueError, TypeError, RecursionError):
+        return json.loads(text)
+    return None
 
 
 def require_as_told(
@@ -59,8 +68,8 @@ def require_as_told(
     if {name: form(values) for name, values in found.items()} != wanted:
         raise ValueError("its datasets are others than it says")
     if "run" in found and "runs" in attributes:
-        runs = attributes.get("first_run", 0) + np.arange(attributes["runs"])
-        if not np.array_equal(found["run"], runs):
+        count, first = attributes["runs"], attributes.get("first_run", 0)
+        if len(found["run"]) != count or np.any(found["run"] != first + np.arange(float(count))):
             raise ValueError("its runs are others than it says")
     if "time_s" in found and not np.all(np.diff(found["time_s"]) > 0):
         raise ValueError("its times do not ascend")

@@ -75,8 +75,12 @@ def _sentence(error: BaseException) -> str:
     """Return why nothing was written; a pool of processes only tells that one ended."""
     if isinstance(error, BrokenProcessPool):
         return "a worker process was ended; run again to go on"
-    if isinstance(error, OSError) and error.filename:
-        return f"{error.filename}: {error.strerror}; the same command goes on from here"
+    if isinstance(error, OSError):
+        place = f"{error.filename}: " if error.filename else ""
+        return f"{place}{error.strerror or error}; the same command goes on from here"
+    if isinstance(error, MemoryError):
+        why = "there is no memory for it; a value is far too large, or fewer --jobs leave enough"
+        return ": ".join([*getattr(error, "__notes__", []), why])
     if isinstance(error, UserError | BrokenExecutor):
         return str(error)
     return f"{type(error).__name__}: {error}"

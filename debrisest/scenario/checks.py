@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from debrisest import arithmetic
 from debrisest.arrays import Data
 from debrisest.assessment.statistics import window_mask
 from debrisest.clock import Clock
@@ -81,11 +82,15 @@ def _parts_that_refuse(case: Case) -> Found:
     data: Data = {**measured, "time_s": clock.times}
     for path, part in parts.items():
         try:
-            data |= part.simulate_named(path.partition(".")[2], data, clock, draws)
+            with arithmetic.strict():
+                data |= part.simulate_named(path.partition(".")[2], data, clock, draws)
+        except arithmetic.FAILURES as error:
+            yield tuple(path.split(".", 1)), arithmetic.told(error)
+            return
         except ValueError as error:
             yield tuple(path.split(".", 1)), str(error)
             return
-        except (MemoryError, OverflowError):
+        except MemoryError:
             yield tuple(path.split(".", 1)), _TOO_MUCH
             return
 

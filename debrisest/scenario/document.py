@@ -196,7 +196,7 @@ class _Reader:
     def _carried(self, text: str, place: Place) -> str:
         """Return a text without the characters that nothing can carry, each a problem."""
         for code in dict.fromkeys(map(ord, UNCARRIED.findall(text))):
-            message = f"{text[:40]!r} has the character U+{code:04X}, which no file can carry; "
+            message = f"{text[:40]!r} has the character U+{code:04X}, which no text can carry; "
             self.problems.append(Problem(place, message + "leave it out"))
         return UNCARRIED.sub("", text)
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Hashable, Iterable, Iterator
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
@@ -13,8 +13,11 @@ from debrisest.errors import UserError
 MOST_LETTERS = 100
 MOST_LETTERS_OF_A_PART = 50
 """Together with a case's name and a host's it must be a file's name, of 255 bytes at most."""
-UNCARRIED = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
-"""Control characters, and halves of characters that no file can hold."""
+UNCARRIED = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
+)
+"""Characters that control lines or the direction of writing, and halves that no file can hold."""
+_TAKEN = ("tables.", "report.", "estimates.")
 _FORMULA = ("=", "+", "-", "@")
 
 
@@ -43,11 +46,12 @@ Line = Annotated[str, AfterValidator(lambda text: " ".join(text.split()))]
 def check_scenario_name(path: Path) -> None:
     """Raise UserError where a file's stem cannot be the name of a folder of results."""
     name = path.stem
-    if name != name.strip(". ") or name.startswith(_FORMULA) or not name.isprintable():
+    odd = name != name.strip(". ") or name.startswith(_FORMULA) or not name.isprintable()
+    if odd or PureWindowsPath(name).is_reserved():
         raise UserError(
             f"{path}: the scenario would be called {name!r}, after its file; a name neither begins "
-            f"with one of {' '.join(_FORMULA)} nor with a dot or a blank, nor ends with these, and "
-            "has no control characters; rename the file"
+            f"with one of {' '.join(_FORMULA)} nor with a dot or a blank, nor ends with these, "
+            "has no control characters, and is no device of Windows; rename the file"
         )
     if len(name.encode()) > MOST_LETTERS:
         raise UserError(f"{path}: a scenario's name has at most {MOST_LETTERS} letters; rename it")
@@ -57,8 +61,10 @@ def case_name_problems(names: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the cases that cannot have their names, each with the reason."""
     names = list(names)
     for name in names:
-        if name.casefold() == "plots" or name.casefold().startswith("tables."):
+        if name.casefold() == "plots" or name.casefold().startswith(_TAKEN):
             yield name, "this name is taken by a file of results; choose another"
+        if name.endswith(".") or PureWindowsPath(name).is_reserved():
+            yield name, "Windows can have no folder of this name; choose another"
         if len(name) > MOST_LETTERS:
             said = f"the grid names this case with {len(name)} letters, at most {MOST_LETTERS} are"
             yield name, f"{said} possible: {name[:40]}...; vary fewer keys, or by cases"

@@ -175,8 +175,8 @@ class Scenario(Keys):
     seed: Annotated[int, Field(ge=0, lt=2**63)]
     """All randomness follows from it."""
     draws: CaseName | None = None
-    """What draws are bound to, beside the seed; default: the case's own name. Cases of one name share
-    theirs."""
+    """What draws are bound to, beside the seed; default: the case's own name. Cases of one name
+    share theirs."""
     runs: Annotated[int, Field(ge=1, le=MOST_RUNS)]
     """Monte Carlo runs per case; `--runs N` overrides it."""
     keep: Annotated[int, Field(ge=1)] | Literal["all"] = 1

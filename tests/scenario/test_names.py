@@ -26,6 +26,11 @@ REFUSED = {
     "capitals": ("  fast: {}", "  fast: {}\n  Slow: {}", ["cases.Slow", "'slow'", "case"]),
     "capitals_of_estimators": ("  wahba:", "  Triad:", ["estimators.Triad", "'triad'"]),
     "reserved": ("  fast: {}", "  fast: {}\n  Tables.MD: {}", ["taken by a file"]),
+    "reserved_by_a_report": ("  fast: {}", "  fast: {}\n  report.html: {}", ["taken by a file"]),
+    "device": ("  fast: {}", "  fast: {}\n  aux.h5: {}", ["cases.aux.h5: Windows"]),
+    "dot_at_the_end": ("  fast: {}", "  fast: {}\n  other.: {}", ["cases.other.: Windows"]),
+    "direction": ("made for the tests", "made \u202ef\u202c tests", ["U+202E", "U+202C"]),
+    "line_separator": ("    a: {position", '    "a\\u2028b": {position', ["U+2028", ":12:5: "]),
     "formula": ('table: "2"', 'table: "=HYPERLINK(1)"', ["tables.layout.1.table", "=HYPERLINK"]),
     "mean": ("    mean: [", '    "=1+1": [', ["tables.means.=1+1"]),
     "nul_in_a_path": ("published: small.csv", 'published: "small\\0.csv"', ["U+0000"]),
@@ -45,7 +50,9 @@ def test_each_is_refused_with_place_and_reason(name: str, small: Path, cli: Any)
     assert "\x1b" not in result.stderr
 
 
-@pytest.mark.parametrize("stem", [".", "..", "=cmd", "-x", "a\tb", "x" * 101, "a.", "\udcff"])
+@pytest.mark.parametrize(
+    "stem", [".", "..", "=cmd", "-x", "a\tb", "x" * 101, "a.", "\udcff", "Nul", "com1.old"]
+)
 def test_a_file_whose_name_cannot_be_a_folders(stem: str, small: Path, cli: Any) -> None:
     config = small.with_name(f"{stem}.yaml")
     config.write_text(small.read_text())

@@ -16,7 +16,7 @@ Count = Annotated[int, Field(ge=1)]
 class PursuitKeys(Keys):
     """How a lasso on a Fourier dictionary is posed and solved."""
 
-    dictionary_ratio: Annotated[float, Field(ge=1)] = 2.0
+    dictionary_ratio: Annotated[float, Field(ge=1, le=1000)] = 2.0
     """Atoms per sample; 1 is the plain transform. Direction cosines have more lines than the
     quaternion: 4 is better."""
     penalty: Positive

@@ -13,7 +13,9 @@ from debrisest.roles import Positive, SimulationPart
 
 
 def _possible_ratios(k: list[float]) -> list[float]:
-    if not np.abs(inertia_ratios.slopes(np.array(k))).max() < 1:
+    with np.errstate(over="ignore", invalid="ignore"):
+        slope = np.abs(inertia_ratios.slopes(np.array(k))).max()
+    if not slope < 1:
         raise ValueError(
             "no body has these inertia ratios, ln(Ix/Iy) and ln(Iy/Iz): one principal moment "
             "would exceed the sum of the two others (triangle inequality)"

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from debrisest.arithmetic import strict
 from debrisest.arrays import Data
 from debrisest.runner.stages.reason import reason
 from debrisest.vocabulary import has_runs
@@ -14,6 +15,7 @@ MACHINE_FAILURES = (MemoryError, OSError)
 """What is no fault of a run: the step is not finished, and is tried again next time."""
 
 
+@strict()
 def isolate(compute: Callable[[Data], Data], data: Data) -> Data:
     """Return ``compute(data)`` for all runs together, or run by run where that fails.
 

@@ -5,15 +5,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from traceback import extract_tb
 
-from numpy.linalg import LinAlgError
-
+from debrisest import arithmetic
 from debrisest.catalog import kind_of
 from debrisest.errors import UserError
 from debrisest.roles import Part
 
 _LIBRARIES = {"numpy", "scipy"}
-_NUMERIC = (OverflowError, FloatingPointError, ZeroDivisionError, RuntimeWarning, LinAlgError)
-"""What ordinary code raises of numbers that are far too large or too small."""
 _MOST_TOLD = 300
 
 
@@ -23,7 +20,8 @@ def about(path: str, part: Part) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        with_keys = f" with {_keys(part)}" if isinstance(error, _NUMERIC) else ""
+        by_values = isinstance(error, (*arithmetic.FAILURES, MemoryError))
+        with_keys = f" with {_keys(part)}" if by_values else ""
         error.add_note(f"{path} ({kind_of(type(part))}){with_keys}")
         raise
 
@@ -31,12 +29,11 @@ def about(path: str, part: Part) -> Iterator[None]:
 def reason(error: Exception) -> str:
     """Return why a run failed, the part first; what nobody foresaw is said to be a mistake."""
     said = str(error) or "no more is known"
-    if not _on_purpose(error):
-        cause = "a value may be too large or too small; if none is, " * isinstance(error, _NUMERIC)
-        said = (
-            f"{type(error).__name__}: {said}; {cause}this is a mistake of debrisest or of a "
-            "plug-in: please report it"
-        )
+    report = "this is a mistake of debrisest or of a plug-in: please report it"
+    if isinstance(error, arithmetic.FAILURES):
+        said = f"{arithmetic.told(error)}; if none is, {report}"
+    elif not _on_purpose(error):
+        said = f"{type(error).__name__}: {said}; {report}"
     return ": ".join([*getattr(error, "__notes__", []), said])
 
 
