@@ -16,6 +16,8 @@ from debrisest.filters.landmarks.cost import Cost, Prior, Unknowns, cost
 from debrisest.filters.linear_algebra import scaled_solve
 from debrisest.filters.runs import take
 
+FROM_NEAR = 1e-6
+"""First damping of a window that begins at the solution of the one before it."""
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
 _FEW, _PATIENCE = 5, 3
 _DECREASE = 0.05
@@ -112,8 +114,9 @@ def descend_on(
     frames: IntArray,
     iterations: int,
     robust: bool,
+    damping: float = _FIRST_DAMPING,
 ) -> Fit:
-    """Lower the cost of every run; ``at`` is changed in place."""
+    """Lower the cost of every run, the first step damped so much; ``at`` is changed in place."""
 
     def trial(best: Fit, runs: IntArray, step: Array) -> Fit:
         moved, part = take(best.at, runs).moved(step), take(prior, runs)
@@ -121,7 +124,8 @@ def descend_on(
         return Fit(moved, part, _usable(found))
 
     first = Fit(at, prior, _usable(cost(model, observed, prior, at, frames, robust)))
-    return descend(first, lambda fit: fit.found.value, _step, trial, _DAMPING, iterations)[0]
+    rule = Damping(damping, _next_damping, _done)
+    return descend(first, lambda fit: fit.found.value, _step, trial, rule, iterations)[0]
 
 
 def _usable(found: Cost) -> Cost:
@@ -150,6 +154,3 @@ def _next_damping(damping: Array, better: BoolArray) -> Array:
 
 def _done(_: Array, promise: Array, damping: Array) -> BoolArray:
     return np.asarray((promise < _DECREASE) | (damping >= _MOST_DAMPING))
-
-
-_DAMPING = Damping(_FIRST_DAMPING, _next_damping, _done)

@@ -23,13 +23,21 @@ from debrisest.filters.landmarks.batch_start import (
     redrawn,
 )
 from debrisest.filters.landmarks.cost import FAR, Unknowns, without_far
-from debrisest.filters.landmarks.growing_windows import Fit, Window, descend_on, fit, place
+from debrisest.filters.landmarks.growing_windows import (
+    FROM_NEAR,
+    Fit,
+    Window,
+    descend_on,
+    fit,
+    place,
+)
 from debrisest.filters.landmarks.update import Belief
 from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.runs import put, take
 
 _GROWTH = 1.5
 _ROUNDS = 3
+_PATIENCE = 3
 _THIN = 120
 """Frames of a window that is only to find the way."""
 
@@ -108,19 +116,39 @@ def _again(
         bad = np.flatnonzero(~batch.accepts(found.best) & open_still)
         if len(bad) == 0:
             break
-        part = task.of(bad)
+        part, rival = task.of(bad), take(found.best, bad)
         if attempt == 0 and batch.mirrored:
-            new = _from_mirror(part, take(before.best, bad))
+            left, new = _led(part, _from_mirror(part, take(before.best, bad)), rival, ends, PRUNE)
         else:
-            new = redrawn(part, attempt)
-        for end in ends[:-1]:
-            new = _thin(part, new, end)
-        new, kept = _exact(part, _thin(part, new, ends[-1]), ends[-1])
+            left, new = _led(part, redrawn(part, attempt), rival, ends, np.inf)
+        found.restarts[np.delete(bad, left)] += 1
+        if len(left) == 0:
+            continue
+        bad, part = bad[left], part.of(left)
+        new, kept = _exact(part, new, ends[-1])
         rest = take(new, np.arange(len(bad)))
         rest.found.value[:] = np.inf
         won = adopt(found, bad, new, rest)
         observed = _replaced(observed, bad[won], kept.at(won))
     return observed
+
+
+def _led(
+    task: Problem, begun: Fit, rival: Fit, ends: Sequence[int], most: float
+) -> tuple[IntArray, Fit]:
+    """Lead fits through windows to the last end; which runs get there, and their fits.
+
+    One whose cost on its way is by ``most`` higher than its rival's per component is given up.
+    """
+    runs = np.arange(len(task.parameters))
+    ratio = rival.found.value / np.maximum(rival.found.dof, 1)
+    for end in ends:
+        begun = _thin(task.of(runs), begun, end)
+        kept = np.flatnonzero(~(begun.found.value - begun.found.dof * ratio[runs] >= most))
+        runs, begun = runs[kept], take(begun, kept)
+        if len(runs) == 0:
+            break
+    return runs, begun
 
 
 def _from_mirror(task: Problem, best: Fit) -> Fit:
@@ -137,10 +165,11 @@ def _from_mirror(task: Problem, best: Fit) -> Fit:
 def _thin(task: Problem, begun: Fit, end: int) -> Fit:
     """Fit over some of the frames of a window."""
     window = Window(end, max(1, end // _THIN))
-    batch = task.batch
-    return fit(
-        *(task.model, task.observed, begun.at, begun.prior),
-        *([window], batch.iterations, batch.robust),
+    model, batch, observed = task.model, task.batch, task.observed
+    at, prior = place(model, observed, begun.at, begun.prior, end)
+    return descend_on(
+        *(model, observed, at, prior, window.frames),
+        *(_PATIENCE * batch.iterations, batch.robust, FROM_NEAR),
     )
 
 
@@ -162,7 +191,7 @@ def _exact(task: Problem, begun: Fit, end: int) -> tuple[Fit, Observations]:
         part, begin = task.of(runs), take(result, runs)
         new = descend_on(
             *(part.model, observed.at(runs), begin.at, begin.prior),
-            *(np.arange(end + 1), batch.iterations, False),
+            *(np.arange(end + 1), batch.iterations, False, FROM_NEAR),
         )
         put(result, runs, new)
         runs = runs[new.found.squares_dof < new.found.dof]
