@@ -13,6 +13,10 @@ from debrisest.show.tables.verdict import CONSISTENCY, SYMBOLS, Verdict
 from debrisest.vocabulary import VOCABULARY
 
 PAPER = "paper"
+BELOW = "?"
+"""Stands after a ratio to a bound that the figure is below by more than chance."""
+SHARES = ("share", "ever")
+SQUARES = tuple(name for name, entry in VOCABULARY.items() if entry.chi_square)
 DERIVED = "*"
 """Stands after a published value that is not printed so."""
 _SHOWN = {SIMULATED: "simulated"}
@@ -128,12 +132,35 @@ def _text(part: pd.DataFrame, source: str, quantity: str, detail: bool) -> str:
     figure = f"{measured:.3g}{VOCABULARY[quantity].after_figure}" if pd.notna(measured) else "-"
     lost = int(own["failed"].iloc[0] + own["diverged"].iloc[0])
     note = f"({lost}) " if lost else ""
-    more = _details(*own[["measured", "ci_low", "ci_high", "bound"]].iloc[0]) if detail else ""
+    more = _details(own[:1]) if detail else ""
     return f"{note}{figure}{more} {SYMBOLS[Verdict(verdict)]}".rstrip()
 
 
-def _details(measured: float, low: float, high: float, bound: float) -> str:
+def _details(cell: pd.DataFrame) -> str:
     """Return the interval of a figure and its ratio to the bound, as far as they are known."""
+    measured, low, high, bound = cell[["measured", "ci_low", "ci_high", "bound"]].iloc[0]
     interval = f" [{low:.3g}, {high:.3g}]" if pd.notna(low) and pd.notna(high) else ""
-    known = pd.notna(bound) and bound > 0 and pd.notna(measured) and measured != bound
-    return interval + (f" ×{measured / bound:.3g}" if known else "")
+    doubt = BELOW if below_bound(cell).any() else ""
+    return interval + (f" ×{measured / bound:.3g}{doubt}" if with_ratio(cell).any() else "")
+
+
+def with_ratio(cells: pd.DataFrame) -> pd.Series:
+    """Return which cells are told with their ratio to the bound: sizes of errors that have one."""
+    known = (cells["bound"] > 0) & (cells["measured"] != cells["bound"])
+    return known & _sizes(cells)
+
+
+def below_bound(cells: pd.DataFrame) -> pd.Series:
+    """Return which of them are smaller than their bound by more than chance."""
+    return with_ratio(cells) & (cells["ci_high"] < cells["bound"])
+
+
+def without_bound(cells: pd.DataFrame) -> pd.Series:
+    """Return which cells have a size of an error and no bound to set it against."""
+    return _sizes(cells) & cells["bound"].isna()
+
+
+def _sizes(cells: pd.DataFrame) -> pd.Series:
+    """Return which cells have a size of an error, which a bound is about: no share, no square."""
+    others = cells["statistic"].isin(SHARES) | cells["quantity"].isin(SQUARES)
+    return cells["measured"].notna() & ~others
