@@ -15,6 +15,7 @@ _LATEX = {ord(sign): f"\\{sign}" for sign in "&%$#_{}"} | {
 _MARKDOWN = re.compile(
     r"[\\`*|\[\]$]"  # signs that mean something wherever they stand
     r"|<(?=[A-Za-z/!?])|&(?=[A-Za-z#])"  # the start of a tag or of an entity
+    r"|#$"  # the end of a heading
     r"|(?<![A-Za-z0-9])_|_(?![A-Za-z0-9])"  # emphasis begins and ends at words
 )
 

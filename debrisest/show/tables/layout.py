@@ -13,6 +13,10 @@ from debrisest.show.tables.verdict import CONSISTENCY, SYMBOLS, Verdict
 from debrisest.vocabulary import VOCABULARY
 
 PAPER = "paper"
+BELOW = "?"
+"""Stands after a ratio to a bound that the figure is below by more than chance."""
+SHARES = ("share", "ever")
+SQUARES = tuple(name for name, entry in VOCABULARY.items() if entry.chi_square)
 DERIVED = "*"
 """Stands after a published value that is not printed so."""
 _SHOWN = {SIMULATED: "simulated"}
@@ -120,7 +124,8 @@ def _sources(cells: pd.DataFrame) -> list[str]:
 
 def _rows(part: pd.DataFrame) -> list[Any]:
     """Return cells as records: looked through one by one they take a tenth of the time."""
-    return list(part.itertuples())
+    told = part.assign(has_ratio=with_ratio(part), below=below_bound(part))
+    return list(told.itertuples())
 
 
 def _text(rows: list[Any], source: str, quantity: str, detail: bool) -> str:
@@ -136,12 +141,35 @@ def _text(rows: list[Any], source: str, quantity: str, detail: bool) -> str:
     figure = f"{own.measured:.3g}{after}" if pd.notna(own.measured) else "-"
     lost = int(own.failed + own.diverged)
     note = f"({lost}) " if lost else ""
-    more = _details(own.measured, own.ci_low, own.ci_high, own.bound) if detail else ""
+    more = _details(own) if detail else ""
     return f"{note}{figure}{more} {SYMBOLS[Verdict(own.verdict)]}".rstrip()
 
 
-def _details(measured: float, low: float, high: float, bound: float) -> str:
+def _details(cell: Any) -> str:
     """Return the interval of a figure and its ratio to the bound, as far as they are known."""
-    interval = f" [{low:.3g}, {high:.3g}]" if pd.notna(low) and pd.notna(high) else ""
-    known = pd.notna(bound) and bound > 0 and pd.notna(measured) and measured != bound
-    return interval + (f" ×{measured / bound:.3g}" if known else "")
+    known = pd.notna(cell.ci_low) and pd.notna(cell.ci_high)
+    interval = f" [{cell.ci_low:.3g}, {cell.ci_high:.3g}]" if known else ""
+    doubt = BELOW if cell.below else ""
+    return interval + (f" ×{cell.measured / cell.bound:.3g}{doubt}" if cell.has_ratio else "")
+
+
+def with_ratio(cells: pd.DataFrame) -> pd.Series:
+    """Return which cells are told with their ratio to the bound: sizes of errors that have one."""
+    known = (cells["bound"] > 0) & (cells["measured"] != cells["bound"])
+    return known & _sizes(cells)
+
+
+def below_bound(cells: pd.DataFrame) -> pd.Series:
+    """Return which of them are smaller than their bound by more than chance."""
+    return with_ratio(cells) & (cells["ci_high"] < cells["bound"])
+
+
+def without_bound(cells: pd.DataFrame) -> pd.Series:
+    """Return which cells have a size of an error and no bound to set it against."""
+    return _sizes(cells) & cells["bound"].isna()
+
+
+def _sizes(cells: pd.DataFrame) -> pd.Series:
+    """Return which cells have a size of an error, which a bound is about: no share, no square."""
+    others = cells["statistic"].isin(SHARES) | cells["quantity"].isin(SQUARES)
+    return cells["measured"].notna() & ~others

@@ -11,14 +11,24 @@ from rich.text import Text
 
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.tables.escapes import latex, markdown, paragraph
-from debrisest.show.tables.layout import DERIVED, Sheet, sheets
+from debrisest.show.tables.layout import (
+    DERIVED,
+    Sheet,
+    below_bound,
+    sheets,
+    with_ratio,
+    without_bound,
+)
 from debrisest.show.tables.published import derived_values
 from debrisest.show.tables.verdict import (
     CONSISTENCY,
     LEGEND,
+    LEGEND_OF_BELOW,
     LEGEND_OF_CONSISTENCY,
-    LEGEND_OF_DETAILS,
+    LEGEND_OF_INTERVALS,
     LEGEND_OF_LOST,
+    LEGEND_OF_NO_BOUND,
+    LEGEND_OF_RATIOS,
 )
 from debrisest.show.terminal import console
 
@@ -73,7 +83,7 @@ def _markdown(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
 
 def legends(scenario: LoadedScenario, cells: pd.DataFrame, detail: bool = False) -> list[str]:
     """Return what explains the signs, the numbers in brackets and the words of these cells."""
-    details = [LEGEND_OF_DETAILS] if detail and cells["ci_low"].notna().any() else []
+    details = _legends_of_details(cells) if detail else []
     signs = [LEGEND] if cells["published"].notna().any() else []
     lost = [LEGEND_OF_LOST] if (cells["failed"] + cells["diverged"] > 0).any() else []
     words = [LEGEND_OF_CONSISTENCY] if cells["verdict"].isin(CONSISTENCY).any() else []
@@ -81,6 +91,17 @@ def legends(scenario: LoadedScenario, cells: pd.DataFrame, detail: bool = False)
     derived = [f"{DERIVED} not printed so: {made}"] if made else []
     first = signs + lost + details
     return ["; ".join(first)] * bool(first) + derived + words
+
+
+def _legends_of_details(cells: pd.DataFrame) -> list[str]:
+    rated = with_ratio(cells).any()
+    said = {
+        LEGEND_OF_INTERVALS: cells["ci_low"].notna().any(),
+        LEGEND_OF_RATIOS: rated,
+        LEGEND_OF_BELOW: below_bound(cells).any(),
+        LEGEND_OF_NO_BOUND: rated and without_bound(cells).any(),
+    }
+    return [legend for legend, needed in said.items() if needed]
 
 
 def _latex(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
@@ -117,7 +138,7 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
             terminal.print(title, soft_wrap=True)
             detailed = _rich_table(full)
             fits = _width(detailed, terminal) <= terminal.width
-            terminal.print(detailed if fits else _fitting(plain, terminal))
+            terminal.print(*([detailed] if fits else _fitting(plain, terminal)))
             details |= fits
         for text in legends(scenario, cells, details):
             terminal.print(f"{text}\n", style="dim", soft_wrap=True, markup=False)
@@ -129,13 +150,27 @@ def _width(table: Table, terminal: Console) -> int:
     return terminal.measure(table, options=terminal.options.update_width(10**4)).maximum
 
 
-def _fitting(sheet: Sheet, terminal: Console) -> Table:
-    """Return the table; if it is too wide, with units below the names, then names in parts."""
+def _fitting(sheet: Sheet, terminal: Console) -> list[Table]:
+    """Return the table; if it is too wide, with units below the names, then names in parts.
+
+    If that is too wide as well, it is two tables of half the columns each, and so on.
+    """
     below = [head.replace(" (", "\n(").replace(", ", ",\n") for head in sheet.heads]
     parts = [head.replace("_", "_\n") for head in below]
     tables = [_rich_table(sheet._replace(heads=heads)) for heads in (sheet.heads, below, parts)]
-    fits = (table for table in tables if _width(table, terminal) <= terminal.width)
-    return next(fits, tables[-1])
+    fits = [table for table in tables if _width(table, terminal) <= terminal.width]
+    named = 2 if "source" in sheet.heads else 1
+    middle = (named + len(sheet.heads) + 1) // 2
+    if fits or len(sheet.heads) < named + 2:
+        return [*fits, tables[-1]][:1]
+    halves = (slice(named, middle), slice(middle, None))
+    return [table for half in halves for table in _fitting(_columns(sheet, named, half), terminal)]
+
+
+def _columns(sheet: Sheet, named: int, chosen: slice) -> Sheet:
+    """Return a sheet with the columns that name its rows, and some of the others."""
+    heads, *rows = ([*row[:named], *row[chosen]] for row in (sheet.heads, *sheet.rows))
+    return sheet._replace(heads=heads, rows=[row for row in rows if any(row[named:])])
 
 
 def _rich_table(sheet: Sheet) -> Table:

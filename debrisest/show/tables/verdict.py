@@ -33,7 +33,13 @@ SYMBOLS = {
 }
 LEGEND = "= reproduced, < better, > worse than published, x not reproduced (most runs were lost)"
 LEGEND_OF_LOST = "(n) runs that diverged or failed, left out: debrisest status says why"
-LEGEND_OF_DETAILS = "[low, high] 95 % interval over the runs, ×n times the bound"
+LEGEND_OF_INTERVALS = "[low, high] 95 % interval over the runs"
+LEGEND_OF_RATIOS = "×n times the bound"
+LEGEND_OF_BELOW = (
+    "×n? the interval lies below the bound: too few runs, or a bound with another prior or model "
+    "than this estimator's"
+)
+LEGEND_OF_NO_BOUND = "without ×n: there is no bound of this estimator's own model"
 LEGEND_OF_CONSISTENCY = (
     "consistent: within the 95 % chi-square interval of the runs used; over-confident: above it, "
     "the errors are larger than the covariance says; over-cautious: below it; not the minimum: the "

@@ -18,7 +18,7 @@ from debrisest.show.tables.escapes import latex, markdown, paragraph
 TITLES = [
     "=HYPERLINK(1)", "<img src=x onerror=y>", "a | b", "[red]x[/] :smile: [link](y)", "back\\",
     "$x_1^2$ & 5 % of #3 {y} ~ z", "_under_ snake_case *star* `tick`", "1. first", "# head",
-    "> quote", "- item", "&lt; <b>", "$\\frac$ and $",
+    "> quote", "- item", "C #", "##", "&lt; <b>", "$\\frac$ and $",
 ]  # fmt: skip
 LINES = st.text(st.characters(min_codepoint=33, max_codepoint=126) | st.just(" "), min_size=1)
 READER = MarkdownIt("commonmark").enable("table")

@@ -103,7 +103,7 @@ def test_intervals_are_shown_where_the_terminal_is_wide_enough(
     width: int, shown: bool, scenario: LoadedScenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", str(width))
-    names = ["peak_torque", "nis"]
+    names = ["peak_torque", "settling_time"]
     text = render(scenario, table(*(detailed(quantity=name) for name in names)), "rich")
     lines = [line for line in text.splitlines() if line[:5] not in ("Table", "= rep")]
     assert max(map(len, lines)) <= width
@@ -118,8 +118,54 @@ def test_a_bound_is_not_told_as_a_multiple_of_itself(scenario: LoadedScenario) -
     assert " ×" not in text.partition("## ")[2]
 
 
+BELOW, WITHOUT = "×n? the interval lies below", "without ×n: there is no bound"
+
+
+@pytest.mark.parametrize(
+    ("cell", "said", "explained"),
+    [
+        ({}, "×1.5 =", ["×n times"]),
+        ({"bound": 1.0}, "×1.2 =", ["×n times"]),
+        ({"bound": 2.0}, "×0.6? =", ["×n times", BELOW]),
+        ({"bound": float("nan")}, "] =", []),
+        ({"quantity": "nis"}, "] =", []),
+        ({"statistic": "share"}, "] =", []),
+    ],
+)
+def test_a_ratio_to_the_bound_is_told_of_errors_and_doubted_below_it(
+    cell: dict, said: str, explained: list[str], small: Path, scenario: LoadedScenario
+) -> None:
+    small.write_text(small.read_text().replace("[mean]", "[mean, share]"))
+    wide = small.read_text().replace("[nis]", "[nis, peak_torque]")
+    small.write_text(wide)
+    cells = table(detailed(**({"quantity": "peak_torque"} | cell)))
+    text = render(load_scenario(small), cells, "md").replace("\\", "")
+    assert said in text.partition("## ")[2]
+    legends = ("×n times", BELOW, WITHOUT)
+    assert [legend for legend in legends if legend in text] == explained
+
+
+def test_figures_without_a_bound_say_so_beside_others(scenario: LoadedScenario) -> None:
+    cells = [detailed(quantity="peak_torque"), detailed(quantity="final_angle", bound=None)]
+    assert WITHOUT in render(scenario, table(*cells), "md")
+
+
+@pytest.mark.parametrize("width", [60, 80, 120, 220])
+def test_no_figure_is_folded_at_any_width(
+    width: int, scenario: LoadedScenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A table that is too wide becomes several, each with the case and the source."""
+    monkeypatch.setenv("COLUMNS", str(width))
+    cells = [{"quantity": name, "measured": 0.000123 + 1e-6 * i} for i, name in enumerate(WIDE)]
+    text = render(scenario, table(*cells), "rich")
+    assert max(len(line) for line in text.splitlines() if line[:5] != "Table") <= width
+    figures = [f"{0.000123 + 1e-6 * i:.3g}" for i in range(len(WIDE))]
+    assert [text.count(figure) for figure in figures] == [1] * len(WIDE)
+    assert text.count("source") == text.count("slow   triad") > (width < 120)
+
+
 def test_latex_has_booktabs_a_label_and_numbers_at_the_right(scenario: LoadedScenario) -> None:
-    text = render(scenario, table(detailed()), "tex")
+    text = render(scenario, table(detailed(quantity="peak_torque")), "tex")
     assert "\\begin{tabular}{lrr}" in text
     for command in ("\\toprule", "\\midrule", "\\bottomrule", "\\label{tab:small-1}"):
         assert text.count(command) == 1
