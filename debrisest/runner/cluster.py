@@ -25,8 +25,8 @@ from debrisest.runner.fingerprint import fingerprint
 PATIENCE_S = 30.0
 """How long a cluster may be without a worker."""
 _CHECKED_EVERY_S = 1.0
-_LOGGERS = ("distributed", "distributed.client", "tornado", "asyncio")
-"""What tells of a lost connection in its own way, and each with a level of its own."""
+_LOGGERS = ("distributed", "tornado", "asyncio")
+"""What tells of a lost connection in its own way; loggers below these have levels of their own."""
 _LOST = "the connection to the dask scheduler was lost; start it and run again"
 _PROOF = "__import__('debrisest.runner.fingerprint', fromlist=['x']).fingerprint()"
 
@@ -48,8 +48,9 @@ def dask_executor(address: str) -> Iterator[tuple[Executor, int]]:
         from distributed import Client
     except ImportError:
         raise UserError("--executor needs the extra dask: pip install 'debrisest[dask]'") from None
-    for name in _LOGGERS:
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    for name in (*_LOGGERS, *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in _LOGGERS:
+            logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = Client(scheduler, timeout=10, set_as_default=False)
     except (OSError, ValueError, TimeoutError):
