@@ -42,8 +42,12 @@ class Results:
         """Return the names of the cases; a simulation that these share is none by itself."""
         estimated = {one.address.case for one in self.chunks if one.address.estimator}
         shared = {self.simulation(case) for case in estimated} - estimated
-        every = dict.fromkeys(chunk.address.case for chunk in self.chunks)
-        return [case for case in every if case not in shared]
+        return [case for case in self._every if case not in shared]
+
+    @property
+    def _every(self) -> list[str]:
+        """Return the names of the cases, and of simulations that they share."""
+        return list(dict.fromkeys(chunk.address.case for chunk in self.chunks))
 
     def simulation(self, case: str) -> str:
         """Return the case in whose name the simulation of a case is kept: by default its own."""
@@ -101,7 +105,7 @@ class Results:
 
     def scenario(self, case: str) -> dict[str, Any]:
         """Return the resolved scenario of a case, as the last of its files has it."""
-        self._check("case", case, self.cases)
+        self._check("case", case, self._every)
         own = [chunk for chunk in self.chunks if chunk.address.case == case]
         last = max(own, key=lambda chunk: str(chunk.attributes["created"]))
         return parse(last.attributes["scenario"], f"{last.path}, scenario")[0].value
@@ -156,7 +160,7 @@ class Results:
 
     def _chosen(self, case: str, estimator: str, stage: str) -> list[Chunk]:
         """Return the files of a stage, by default the last; raise UserError if there is none."""
-        self._check("case", case, self.cases)
+        self._check("case", case, self._every)
         self._check("estimator", estimator, ["", *self.estimators(case)])
         there = self.stages(case, estimator)
         wanted = stage or (there[-1] if there else STAGES[0])

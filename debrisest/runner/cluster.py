@@ -7,8 +7,15 @@ same path everywhere. They compute only after they proved to have the same code 
 import logging
 import threading
 import time
+from asyncio import CancelledError as AsyncCancelledError
 from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future
+from concurrent.futures import (
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    InvalidStateError,
+)
 from contextlib import contextmanager, suppress
 from typing import Any
 
@@ -18,6 +25,9 @@ from debrisest.runner.fingerprint import fingerprint
 PATIENCE_S = 30.0
 """How long a cluster may be without a worker."""
 _CHECKED_EVERY_S = 1.0
+_LOGGERS = ("distributed", "tornado", "asyncio")
+"""What tells of a lost connection in its own way; loggers below these have levels of their own."""
+_LOST = "the connection to the dask scheduler was lost; start it and run again"
 _PROOF = "__import__('debrisest.runner.fingerprint', fromlist=['x']).fingerprint()"
 
 
@@ -38,7 +48,9 @@ def dask_executor(address: str) -> Iterator[tuple[Executor, int]]:
         from distributed import Client
     except ImportError:
         raise UserError("--executor needs the extra dask: pip install 'debrisest[dask]'") from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in (*_LOGGERS, *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in _LOGGERS:
+            logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = Client(scheduler, timeout=10, set_as_default=False)
     except (OSError, ValueError, TimeoutError):
@@ -81,9 +93,12 @@ class _Cluster(Executor):
         self._over.set()
 
     def _finish(self, ours: Future[Any], theirs: Any) -> None:
+        """Hand a result on; a client that loses its scheduler cancels what it waits for."""
         self._running.pop(ours, None)
-        with suppress(Exception):
-            error = theirs.exception()
+        error = CancelledError() if theirs.cancelled() else theirs.exception()
+        if isinstance(error, CancelledError | AsyncCancelledError):
+            error = ClusterLost(_LOST)
+        with suppress(InvalidStateError):
             ours.set_exception(error) if error else ours.set_result(theirs.result())
 
     def _watch(self) -> None:
@@ -94,7 +109,7 @@ class _Cluster(Executor):
                     raise OSError
                 seen = time.monotonic() if self._client.nthreads() else seen
             except Exception:
-                self._lose("the connection to the dask scheduler was lost; start it and run again")
+                self._lose(_LOST)
                 return
             if time.monotonic() - seen > PATIENCE_S:
                 said = f"the dask cluster had no worker for {PATIENCE_S:g} s"

@@ -1,5 +1,6 @@
 """A cluster proves itself before it computes, and what it reports to be done is read back."""
 
+import asyncio
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -85,6 +86,19 @@ def test_a_lost_cluster_ends_what_is_running(
         else:
             client.status = "closed"
         with pytest.raises(cluster.ClusterLost, match=words):
+            running.result(timeout=20)
+
+
+@pytest.mark.parametrize("how", ["cancel", "exception"])
+def test_what_a_client_without_its_scheduler_cancels_is_lost(how: str) -> None:
+    """It may cancel before anyone sees that the connection is gone: nothing waits for ever."""
+    theirs: Future[Any] = Future()
+    client = Client({"a": None}, computes=False)
+    client.submit = lambda *_: theirs  # type: ignore[method-assign]
+    with cluster._Cluster(client) as pool:
+        running = pool.submit(max, 1, 2)
+        theirs.cancel() if how == "cancel" else theirs.set_exception(asyncio.CancelledError())
+        with pytest.raises(cluster.ClusterLost, match="connection"):
             running.result(timeout=20)
 
 

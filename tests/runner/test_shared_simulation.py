@@ -62,6 +62,8 @@ def test_twenty_settings_of_a_filter_simulate_once(
     assert (results.load(one)["measured_point"] == results.load(other)["measured_point"]).all()
     rates = [results.one_run(case, "triad", 0)["rate_b"] for case in (one, other)]
     assert not np.array_equal(*rates)
+    told = cli("status", path, "--out", out, *ONE_RUN).stdout.splitlines()
+    assert "small slow, simulation: 1 runs there, 1 wanted, up to date" in told
     (out / "small" / one / "filter-triad.000000.h5").unlink()
     computed.clear()
     assert sweep(path, out, *ONE_RUN).exit_code == 0

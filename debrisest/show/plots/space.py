@@ -11,6 +11,8 @@ from debrisest.show.plots.style import GREY, SHADE
 
 _NO_HEIGHT = 1e-3
 _TICKS = 5
+_TALL = 1.5
+"""Height over width from which labels need room below and beside."""
 
 
 def spatial_axes(figure: Figure, names: tuple[str, str, str]) -> tuple[Axes, Any]:
@@ -37,4 +39,6 @@ def same_scale(axes: Any, points: Array) -> None:
     low, high = low - room, high + room
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
     axes.locator_params(nbins=_TICKS)
-    axes.set_box_aspect(tuple(high - low), zoom=1.1)
+    tall = (high - low)[2] > _TALL * (high - low)[:2].max()
+    axes.set_box_aspect(tuple(high - low), zoom=0.95 if tall else 1.1)
+    axes.zaxis.labelpad = 10.0 if tall else 4.0
