@@ -19,7 +19,7 @@ trap 'rm -rf "$results"' EXIT
 cd configs
 debrisest sweep biondi2017.yaml first_steps.yaml \
     --runs 10 --check --out "$results" >"$results/tables.txt"
-debrisest sweep li2011.yaml pesce2017.yaml --runs 20 --check --out "$results" >>"$results/tables.txt"
+debrisest sweep li2011.yaml pesce2017.yaml random_observers.yaml --runs 20 --check --out "$results" >>"$results/tables.txt"
 debrisest sweep volpe2017.yaml --case nominal --case spin-free \
     --runs 20 --check --out "$results" >>"$results/tables.txt"
 debrisest sweep biondi2017-noise.yaml biondi2017-robust.yaml pesce2017-robust.yaml \
