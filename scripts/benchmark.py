@@ -3,7 +3,8 @@
 Usage: python scripts/benchmark.py [ROUNDS]    (needs the extra [bench])
 
 Times of one machine say little; the ratios to a peer that runs beside it do. Every comparison
-checks first that both give the same numbers.
+checks first that both give the same numbers. Where numba can be imported, a kernel is also held
+against plain loops that it compiles (`compiled.py`).
 """
 
 import os
@@ -13,6 +14,7 @@ for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import io
 import logging
+import math
 import resource
 import subprocess
 import sys
@@ -47,6 +49,11 @@ from debrisest.problems.stereo_pose.truth import draw_guess, simulate_truth
 from debrisest.problems.tumbling.attitude import TumblingAttitude, Variances
 from debrisest.recovery.basis_pursuit import basis_pursuit
 from debrisest.recovery.fourier import l1_norm
+
+try:
+    from compiled import compiled_states
+except ImportError:
+    compiled_states = None
 
 MOMENTS, RATE = np.array([0.618, 0.707, 0.345]), np.radians([7.2, 5.525, -1.624])
 NOISE = Variances(q_ib=1e-9, q_bf=1e-11, rate_rad2_s2=1e-9, moments=1e-10)
@@ -94,6 +101,48 @@ def tumbling(runs: int, epochs: int) -> tuple[Model, Array, Array, Array]:
     )
 
 
+def scalar_process(x: Array, step: float) -> Array:
+    """Return a state (14,) one step later, in Python floats, the fastest without a compiler."""
+    ja, jb, jc = (math.copysign(max(abs(j), 0.02), j) for j in x[11:].tolist())
+    a, b, c = (jb - jc) / ja, (jc - ja) / jb, (ja - jb) / jc
+    now = [*x[:4].tolist(), *x[8:11].tolist()]
+    count = max(1, math.ceil(math.hypot(*now[4:]) * step / 0.1))
+    h = step / count
+
+    def rates(y: list[float]) -> tuple[float, ...]:
+        q0, q1, q2, q3, w1, w2, w3 = y
+        return (
+            -0.5 * (q1 * w1 + q2 * w2 + q3 * w3),
+            0.5 * (q0 * w1 + q2 * w3 - q3 * w2),
+            0.5 * (q0 * w2 + q3 * w1 - q1 * w3),
+            0.5 * (q0 * w3 + q1 * w2 - q2 * w1),
+            a * w2 * w3,
+            b * w3 * w1,
+            c * w1 * w2,
+        )
+
+    for _ in range(count):
+        k1 = rates(now)
+        k2 = rates([y + 0.5 * h * k for y, k in zip(now, k1)])
+        k3 = rates([y + 0.5 * h * k for y, k in zip(now, k2)])
+        k4 = rates([y + h * k for y, k in zip(now, k3)])
+        now = [y + h / 6 * (p + 2 * (q + r) + s) for y, p, q, r, s in zip(now, k1, k2, k3, k4)]
+    return np.array([*now[:4], *x[4:8], *now[4:], *x[11:]])
+
+
+def scalar_measurement(x: Array) -> Array:
+    """Return the product of both quaternions of a state (14,), in Python floats."""
+    a0, a1, a2, a3, b0, b1, b2, b3 = x[:8].tolist()
+    return np.array(
+        [
+            a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3,
+            a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2,
+            a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1,
+            a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0,
+        ]
+    )
+
+
 def filterpy_states(model: Model, state: Array, covariance: Array, measured: Array) -> Array:
     """Return the states (time, 14) of filterpy's filter on the same model, for one run."""
     points = MerweScaledSigmaPoints(14, alpha=1.0, beta=2.0, kappa=0.0)
@@ -101,8 +150,8 @@ def filterpy_states(model: Model, state: Array, covariance: Array, measured: Arr
         dim_x=14,
         dim_z=4,
         dt=1.0,
-        fx=lambda x, _: model.process(x, 0),
-        hx=lambda x: model.measurement(x, 0),
+        fx=scalar_process,
+        hx=scalar_measurement,
         points=points,
     )
     peer.x, peer.P = state.copy(), covariance.copy()
@@ -113,7 +162,7 @@ def filterpy_states(model: Model, state: Array, covariance: Array, measured: Arr
             peer.sigmas_f = points.sigma_points(peer.x, peer.P)
         else:
             peer.predict()
-        peer.update(np.where(y @ model.measurement(peer.x, 0) < 0, -y, y))
+        peer.update(-y if y @ scalar_measurement(peer.x) < 0 else y)
         peer.x = model.retract(peer.x, np.zeros(14))
         states.append(peer.x.copy())
     return np.array(states)
@@ -130,6 +179,23 @@ def benchmark_unscented(runs: int, epochs: int, rounds: int) -> Row:
     for _ in range(rounds):
         row.ours.append(cpu(lambda: unscented(*ours)) / (runs * epochs))
         row.peer.append(cpu(lambda: filterpy_states(one[0], one[1][0], one[2][0], one[3][0])) / 40)
+    return row
+
+
+def benchmark_compiled(runs: int, epochs: int, rounds: int) -> Row:
+    """Compare a batch of runs with compiled loops over the same runs."""
+    model, start, covariance, measured = problem = tumbling(runs, epochs)
+
+    def loops() -> Array:
+        found: Array = compiled_states(start, covariance, measured, model.process_noise, 1e-4, 1.0)
+        return found
+
+    gap = np.abs(unscented(*problem, redraw=True).state - loops()).max()
+    assert gap < 1e-10, f"the compiled states differ by {gap}"
+    row = Row(f"unscented filter, {runs} at a time / compiled", "run-step", [], [], f"{gap:.0e}")
+    for _ in range(rounds):
+        row.ours.append(cpu(lambda: unscented(*problem, redraw=True)) / (runs * epochs))
+        row.peer.append(cpu(loops) / (runs * epochs))
     return row
 
 
@@ -390,6 +456,39 @@ def benchmark_salsa(rounds: int) -> Row:
     return row
 
 
+# --- growth -----------------------------------------------------------------------------------
+
+
+def growth(rounds: int) -> Table:
+    """Return the exponents with which the CPU time of a whole call grows."""
+
+    def of_unscented(runs: int, epochs: int) -> float:
+        problem = tumbling(runs, epochs)
+        return min(cpu(lambda: unscented(*problem, redraw=True)) for _ in range(rounds))
+
+    def of_replay(runs: int, epochs: int) -> float:
+        guess, measured, known = stereo_pose(runs, epochs)
+        plain = np.concatenate([VARIANCE[:9], 4 * VARIANCE[9:12], VARIANCE[13:]])
+        model = replay_model(known, np.full(45, 1e-5), np.sqrt(plain))
+        covariance = np.tile(np.diag(plain), (runs, 1, 1))
+        return min(cpu(lambda: replay(model, guess, covariance, measured)) for _ in range(rounds))
+
+    def of_shape(points: int) -> float:
+        return shape_seconds(shape_run(20, 8, points), rounds)
+
+    table = Table("filter", "more", "from", "to", "exponent")
+    for name, what, seconds, first, last in (
+        ("unscented", "runs", lambda n: of_unscented(n, 60), 100, 400),
+        ("unscented", "epochs", lambda n: of_unscented(100, n), 50, 200),
+        ("replay", "runs", lambda n: of_replay(n, 30), 20, 80),
+        ("replay", "epochs", lambda n: of_replay(20, n), 30, 120),
+        ("91 states", "features", of_shape, 12, 24),
+    ):
+        exponent = math.log(seconds(last) / seconds(first)) / math.log(last / first)
+        table.add_row(name, what, str(first), str(last), f"{exponent:.2f}")
+    return table
+
+
 # --- the command line -------------------------------------------------------------------------
 
 
@@ -408,9 +507,11 @@ def help_seconds(rounds: int) -> list[float]:
 
 def main(rounds: int = 5) -> None:
     """Print one row per comparison: medians, and the ratios' range over the rounds."""
+    compiled = [] if compiled_states is None else [100, 1]
     rows = [
         benchmark_unscented(100, 100, rounds),
         benchmark_unscented(1, 300, rounds),
+        *(benchmark_compiled(runs, 100, rounds) for runs in compiled),
         benchmark_extended(rounds, numeric=True),
         benchmark_extended(rounds, numeric=False),
         benchmark_replay(rounds),
@@ -426,13 +527,17 @@ def main(rounds: int = 5) -> None:
             row.unit,
             f"{1e6 * np.median(row.ours):.0f}",
             f"{1e6 * np.median(row.peer):.0f}",
-            f"{np.median(ratios):.1f} ({ratios.min():.1f}-{ratios.max():.1f})",
+            f"{np.median(ratios):.2g} ({ratios.min():.2g}-{ratios.max():.2g})",
             row.agreement,
         )
     console = Console(width=120)
     console.print(table)
     console.print("The filter of pose and shape with every point in two frames, cost over points:")
     console.print(cost_over_points(rounds))
+    console.print("Exponents of growth of a whole call:")
+    console.print(growth(rounds))
+    if compiled_states is None:
+        console.print("numba is not installed: nothing was compared with compiled loops")
     seconds = help_seconds(rounds)
     console.print(f"debrisest --help: {np.median(seconds):.3f} s of CPU")
 

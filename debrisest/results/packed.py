@@ -16,7 +16,7 @@ from debrisest.arrays import Array
 
 WORTH = 0.7
 _LEVEL = 1
-_SMALLEST, _PART = 2**15, 2**18
+_SMALLEST, _PART = 2**13, 2**18
 """Bytes below which a dataset is left alone, and of a part: all runs of some epochs."""
 _PARTS = 16
 """A dataset has as many parts at least, so that a single epoch does not need all of it."""

@@ -15,6 +15,7 @@ _TYPES: dict[str, type] = {
     "runs": int,
     "whole_runs": int,
     "failed_runs": int,
+    "cpu_s": float,
     "seed": int,
     **dict.fromkeys(("case", "estimator", "stage", "stage_key", "scenario", "created"), str),
     **dict.fromkeys(("software", "commit", "imported_from"), str),

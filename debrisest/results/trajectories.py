@@ -11,7 +11,7 @@ from debrisest.arrays import Array, Data
 from debrisest.vocabulary import VOCABULARY, axes_of
 
 _OF_EPOCHS = ("time_s", "covariance_time_s")
-_SMALL = 2**18
+_SMALL = 2**16
 """Bytes up to which the trajectories of a file are kept whatever is asked for."""
 
 

@@ -6,6 +6,7 @@ A step that another goes with is followed by it, which sees all trajectories bef
 import json
 from collections.abc import Iterator, Sequence
 from itertools import groupby
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -29,27 +30,34 @@ def compute(steps: Sequence[Step]) -> None:
     reads = [_read(one) for one in steps]
     batches = groupby(zip(steps, reads), key=lambda pair: _shapes(pair[1]))
     for chunks, inputs in (zip(*batch) for _, batch in batches):
-        result = _run(step, _together(inputs))
+        result, seconds = _run(step, _together(inputs))
         for chunk, read, data in zip(chunks, inputs, _apart(result, chunks)):
-            _write(chunk, data)
+            _write(chunk, data, seconds)
             if chunk.then is not None:
                 store.require(chunk.path, chunk.attributes | {"runs": chunk.runs})
-                _write(chunk.then, _run(chunk.then, read | _seen_later(data, chunk)))
+                _write(chunk.then, *_run(chunk.then, read | _seen_later(data, chunk)))
 
 
-def _run(step: Step, read: Data) -> Data:
-    """Return what a step makes of what it reads, as its file would give it back."""
+def _run(step: Step, read: Data) -> tuple[Data, float]:
+    """Return what a step makes of what it reads, as its file gives it back, and CPU s per run."""
+    before = process_time()
     stage, estimator = STAGES[step.address.stage], step.address.estimator
     result = isolate(lambda data: _declared(stage.run(step.case, estimator, data)), read)
     times = read["time_s"] if step.upstream else step.case.clock.times
-    return as_stored({"time_s": times, **result})
+    data = as_stored({"time_s": times, **result})
+    return data, (process_time() - before) / len(data["run"])
 
 
-def _write(step: Step, data: Data) -> None:
+def _write(step: Step, data: Data, seconds: float) -> None:
+    """Write the file of a step whose runs took so many CPU seconds each."""
     scenario = step.case.scenario
     whole = max(0, scenario.whole_runs - step.address.first_run)
     kept, whole = thinned(data, step.address.stage, whole)
-    told = {"whole_runs": whole, "failed_runs": int(np.count_nonzero(data["failure"] != ""))}
+    told = {
+        "whole_runs": whole,
+        "failed_runs": int(np.count_nonzero(data["failure"] != "")),
+        "cpu_s": round(seconds * step.runs, 4),
+    }
     store.write(step.path, kept, _attributes(step) | told, scenario.frames)
 
 

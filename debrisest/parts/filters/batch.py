@@ -20,7 +20,7 @@ class Batch(FilterPart):
     """
 
     takes = "motion_model"
-    version = 3
+    version = 4
     makes_start = True
     kind: Literal["batch"]
     online: bool = False
