@@ -28,7 +28,7 @@ from debrisest.results import store
 CONFIG = Path(__file__).parent.parent / "tests" / "scenarios" / "small.yaml"
 CODES = {signal.SIGKILL: -9, signal.SIGTERM: 143, signal.SIGINT: 130}
 SENTENCE = "interrupted: finished steps are kept"
-PATIENCE_S = 5.0
+PATIENCE_S, START_S = 5.0, 120.0
 ADDRESS = "tcp://127.0.0.1:18786"
 Machine = Sequence[str]
 
@@ -130,7 +130,9 @@ def content(out: Path) -> str:
 
 @contextmanager
 def cluster() -> Iterator[None]:
-    """Run a dask scheduler and a worker."""
+    """Run a dask scheduler and a worker, and wait until it is known."""
+    from distributed import Client
+
     port = ADDRESS.rpartition(":")[2]
     commands = (
         ("scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard"),
@@ -141,6 +143,8 @@ def cluster() -> Iterator[None]:
         subprocess.Popen([sys.executable, "-m", "dask", *each], **quiet) for each in commands
     ]
     try:
+        with Client(ADDRESS, timeout=START_S) as client:
+            client.wait_for_workers(1, timeout=START_S)
         yield
     finally:
         for process in reversed(started):
