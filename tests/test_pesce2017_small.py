@@ -28,6 +28,7 @@ def shortened(text: str) -> dict:
     table = {"table": "4", "title": "Errors", "stage": "filter"}
     return scenario | {
         "runs": RUNS,
+        "keep": "all",
         "duration_s": EPOCHS,
         "cases": {"A-deg": scenario["cases"]["A-deg"], "C-late": late},
         "tables": {

@@ -37,12 +37,13 @@ class PointRows(NamedTuple):
         """Return the derivative ``(run, epoch, m, n_c + 3 N)`` by all errors."""
         runs, epochs, points, each, own = self.by_point.shape
         n_c, of_points = own - 3, points * each
-        result = np.zeros((runs, epochs, self.shown.shape[-1], n_c + 3 * points))
-        block = result[:, :, :of_points].reshape(runs, epochs, points, each, -1)
+        n_e = n_c + 3 * points
+        result = np.zeros((runs, epochs, self.shown.shape[-1], n_e))
+        block = result[:, :, :of_points].reshape(runs, epochs, points, each, n_e)
         block[..., :n_c] = self.by_point[..., :n_c]
         for i in range(points):
             block[:, :, i, :, n_c + 3 * i : n_c + 3 * i + 3] = self.by_point[:, :, i, :, n_c:]
-        result[:, :, :of_points] = block.reshape(runs, epochs, of_points, -1)
+        result[:, :, :of_points] = block.reshape(runs, epochs, of_points, n_e)
         result[:, :, of_points:, :n_c] = self.by_rest
         return result
 

@@ -10,7 +10,7 @@ from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose import data as of_data
 from debrisest.problems.stereo_pose.model import RATE, K, Q, measurement
 from debrisest.problems.stereo_pose.problem import StereoPose, StereoPoseAdditive
-from debrisest.problems.stereo_pose.replay import rows
+from debrisest.problems.stereo_pose.replay import point_rows
 from debrisest.problems.stereo_pose.score import plain_covariance, scores
 
 POINTS, EPOCHS = 5, 4
@@ -85,9 +85,9 @@ def test_the_acceleration_alone_has_three_rows(data, states):
     slow = states[:, 0].copy()
     slow[:, RATE], slow[:, K] = 0.01, 0.1
     course, turning = chart.propagate(known, slow, 0, EPOCHS - 1)
-    found, derivative = rows(known, course, turning, np.tile(np.eye(6), (EPOCHS, 1, 1)), epochs)
-    assert found.shape == of_data.measured_of(data, known.shown).shape == (2, EPOCHS, 3)
-    assert derivative.shape == (2, EPOCHS, 3, 14 + 3 * POINTS)
+    rows = point_rows(known, course, turning, np.tile(np.eye(6), (EPOCHS, 1, 1)), epochs)
+    assert rows.shown.shape == of_data.measured_of(data, known.shown).shape == (2, EPOCHS, 3)
+    assert rows.derivative().shape == (2, EPOCHS, 3, 14 + 3 * POINTS)
 
 
 def test_what_no_sensor_measures_is_told(data):

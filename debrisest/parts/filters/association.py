@@ -123,6 +123,7 @@ class KnownAssociation(FilterPart):
     """The extended Kalman filter that is handed the target's own detections."""
 
     takes = "scan_model"
+    version = 2
     runs_together = 200
     kind: Literal["known_association"]
     keep_s: KeptTimes = []

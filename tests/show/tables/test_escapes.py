@@ -73,7 +73,7 @@ def test_figures_read_no_mathematics(title: str) -> None:
 
 
 def test_a_second_line_of_a_title_stays_in_the_comment(small: Path, swept: Path, cli: Any) -> None:
-    text = small.read_text().replace("title: A small", 'title: "One\\n\\\\input{x}\\u2028A small')
+    text = small.read_text().replace("title: A small", 'title: "One\\n\\\\input{x}\\nA small')
     small.write_text(text.replace("tumbling body\n", 'tumbling body"\n', 1))
     assert cli("table", small, "--out", swept).exit_code == 0
     first = (swept / "small" / "tables.tex").read_text().split("\n")[:2]

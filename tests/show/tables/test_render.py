@@ -78,7 +78,10 @@ def heads_of(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize("count", range(2, len(WIDE) + 1))
-def test_heads_are_whole_on_the_terminal(count: int, scenario: LoadedScenario) -> None:
+def test_heads_are_whole_on_the_terminal(
+    count: int, scenario: LoadedScenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "110")
     of_all = {"estimator": "reproduction", "unit": "mN m"}
     text = render(scenario, table(*(of_all | {"quantity": name} for name in WIDE[:count])), "rich")
     assert max(map(len, text.splitlines())) <= 110
