@@ -180,7 +180,7 @@ def reduced(folder: Path) -> Path:
 
 @contextmanager
 def limited() -> Iterator[None]:
-    """Refuse memory far beyond what a command takes, and end where HDF5 never comes back."""
+    """Refuse memory far beyond what a command takes."""
     before = resource.getrlimit(resource.RLIMIT_AS)
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + ROOM_BYTES, before[1]))
@@ -188,7 +188,6 @@ def limited() -> Iterator[None]:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_AS, before)
-        faulthandler.cancel_dump_traceback_later()
 
 
 def tally(
@@ -207,6 +206,7 @@ def tally(
             found[kind, "all"] += 1
             faulthandler.dump_traceback_later(60, exit=True)
             found.update((kind, how) for how in _outcomes(config, out, table, right))
+            faulthandler.cancel_dump_traceback_later()
             path.write_bytes(content)
     return found
 
