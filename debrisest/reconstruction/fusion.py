@@ -62,7 +62,8 @@ def outside_silhouettes(
     """Return how far points (n, 3) lie outside of the silhouettes (n,), m; negative: inside.
 
     The value is the third largest over all views of ``masks (time, row, column)``, those of the
-    first camera, whose ``matrix (3, 3)`` is given.
+    first camera, whose ``matrix (3, 3)`` is given. What an image does not show at all is outside of
+    a silhouette that lies wholly within it.
     """
     points = points.astype(np.float32)
     worst = np.full((_DOUBTS, len(points)), -np.inf, dtype=np.float32)
@@ -71,9 +72,15 @@ def outside_silhouettes(
         seen = points @ rotation.T.astype(np.float32) + shift.astype(np.float32)
         pixel, inside = _pixels(seen, matrix, masks.shape[1:])
         away = _signed_distance(masks[frame])[pixel] * seen[:, 2] / np.float32(matrix[0, 0])
-        away[~inside] = np.where(seen[~inside, 2] > 0, -np.inf, np.inf)
+        maybe = _at_the_edge(masks[frame]) & (seen[~inside, 2] > 0)
+        away[~inside] = np.where(maybe, -np.inf, np.inf)
         _insert(worst, away)
     return np.asarray(worst[-1])
+
+
+def _at_the_edge(mask: BoolArray) -> bool:
+    """Return whether a silhouette meets the edge of its image, beyond which it may go on."""
+    return bool(mask[[0, -1]].any() or mask[:, [0, -1]].any())
 
 
 def near(grid: Grid, outside: Callable[[Values], Values]) -> Values:

@@ -125,6 +125,16 @@ def test_silhouettes_hold_the_sphere_and_not_much_more():
     assert (outside[2:] > 0).all()
 
 
+def test_what_no_image_shows_is_outside_unless_the_body_leaves_the_image():
+    pytest.importorskip("cv2")
+    _, masks, structure = sphere_views()
+    far = 4.0 * directions(50)
+    assert (fusion.outside_silhouettes(far, masks, MATRIX, structure) > 0).all()
+    cut = masks.copy()
+    cut[:, 60, 60:] = True
+    assert (fusion.outside_silhouettes(far, cut, MATRIX, structure) < 0).any()
+
+
 def test_depth_images_become_a_cloud_whose_poisson_surface_is_the_sphere():
     pytest.importorskip("cv2")
     pytest.importorskip("pycolmap")
