@@ -110,6 +110,7 @@ class _Outer(NamedTuple):
     structure: Structure
 
     def outside(self, points: Array | fusion.Values) -> fusion.Values:
+        """Return how far points (n, 3) lie outside of the silhouettes (n,), m."""
         return fusion.outside_silhouettes(points, *self)
 
     def holds(self, points: Array) -> BoolArray:

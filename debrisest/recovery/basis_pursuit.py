@@ -63,6 +63,7 @@ class _Lasso(NamedTuple):
     splitting: float
 
     def rows(self, index: slice | IntArray | BoolArray) -> "_Lasso":
+        """Return the same of some signals."""
         return self._replace(samples=self.samples[index], weight=self.weight[index])
 
 

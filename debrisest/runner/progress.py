@@ -30,9 +30,11 @@ def progress(steps: int, quiet: bool = False) -> Iterator[Progress]:
 
 class _Silent:
     def done(self, name: str) -> None:
+        """Count a step that has ended."""
         pass
 
     def say(self, text: str) -> None:
+        """Print a line beside the progress."""
         print(text, file=sys.stderr, flush=True)
 
 
@@ -41,10 +43,12 @@ class _Lines:
         self._steps, self._finished = steps, 0
 
     def done(self, name: str) -> None:
+        """Count a step that has ended."""
         self._finished += 1
         self.say(f"[{self._finished}/{self._steps}] {name}")
 
     def say(self, text: str) -> None:
+        """Print a line beside the progress."""
         print(text, file=sys.stderr, flush=True)
 
 
@@ -61,9 +65,11 @@ def _bar(steps: int) -> Iterator[Progress]:
 
         class Bar:
             def done(self, name: str) -> None:
+                """Count a step that has ended."""
                 bars.update(task, advance=1, last=name)
 
             def say(self, text: str) -> None:
+                """Print a line beside the progress."""
                 bars.console.print(text, highlight=False, markup=False)
 
         yield Bar()

@@ -34,6 +34,7 @@ class _Prior(NamedTuple):
     used: BoolArray
 
     def of(self, runs: IntArray) -> "_Prior":
+        """Return the same of some runs."""
         return _Prior(
             self.k, self.state[runs], self.covariance[runs], self.y[runs], self.used[runs]
         )
