@@ -31,7 +31,6 @@ def progress(steps: int, quiet: bool = False) -> Iterator[Progress]:
 class _Silent:
     def done(self, name: str) -> None:
         """Count a step that has ended."""
-        pass
 
     def say(self, text: str) -> None:
         """Print a line beside the progress."""
