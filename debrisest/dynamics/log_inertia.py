@@ -8,6 +8,7 @@ exponential keeps every tensor positive, and the basis of S is orthonormal, so t
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.attitude.vectors import matrix_of_cross
 
 _ROOT2, _ROOT6 = np.sqrt(2.0), np.sqrt(6.0)
 BASIS = np.array(
@@ -53,6 +54,14 @@ def with_derivative(s: Array) -> tuple[Array, Array, Array]:
     back = np.swapaxes(frame, -1, -2)
     derivative = frame @ ((back @ BASIS @ frame) * divided) @ back
     return _rebuilt(np.exp(values), vectors), _rebuilt(np.exp(-values), vectors), derivative
+
+
+def by_turn(s: Array) -> Array:
+    """Derivative ``(..., 5, 3)`` of ``s (..., 5)`` by a small turn of the body axes."""
+    turns = matrix_of_cross(np.eye(3))
+    tensor = _matrix(s)[..., None, :, :]
+    flat = (tensor @ turns - turns @ tensor).reshape(*s.shape[:-1], 3, 9)
+    return np.asarray(BASIS.reshape(5, 9) @ np.swapaxes(flat, -1, -2))
 
 
 def _matrix(s: Array) -> Array:

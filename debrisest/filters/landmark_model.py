@@ -96,6 +96,9 @@ class LandmarkModel(NamedTuple):
     """What the model takes for granted."""
     doubted: Callable[[], "LandmarkModel"] | None = None
     """The model in which each doubt is one more error of the core, and one more parameter."""
+    gauge: Callable[[Array, Array], Array] | None = None
+    """(core, points (run, N, 3)) -> errors (run, n_c + 3 N, g) in g directions that no measurement
+    tells; none where the start is one of the model's own, which holds them."""
     directions: int = 2
     """Leading components of a landmark, its pixels, without which `place` puts it nowhere."""
 

@@ -26,6 +26,8 @@ _TOLD = 0.8
 """Part of the stated information that views must hold."""
 _CROWDED = 0.6
 """Share of near pairs where clutter is dense in the middle; of pieces that stay it is 0.73."""
+_CLAIMED = 2.0
+"""Times the information that there is, above which a sigma is too small by more than 1.4."""
 
 
 class Verdict(Outcome):
@@ -236,6 +238,19 @@ def bend_test(rise: Array) -> SelfTest:
         2.0,
         "one sigma along the direction that the data tell least of, the cost rises by {value} "
         "and not by 1: the errors there are correlated in another way than stated",
+    )
+
+
+def gauge_test(claimed: Array) -> SelfTest:
+    """Test how many times as much (run,) is claimed of what nothing measures as is known of it.
+
+    Its own sigma can be mended, but the errors of all that turns with it lie on an arc.
+    """
+    return SelfTest(
+        claimed,
+        _CLAIMED,
+        "nothing measures how the body axes are turned, and {value} times as much is claimed of it "
+        "as was known at the start: attitude, rate, points and inertia err together, by one turn",
     )
 
 

@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import BoolArray, Data, IntArray
+from debrisest.arrays import Array, BoolArray, Data, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.landmark_model import LandmarkModel, Observations, joined
+from debrisest.filters.landmarks.gauge import honest
 from debrisest.filters.landmarks.tracks import Tracks, begin, inserted, judged, without
 from debrisest.filters.landmarks.update import Belief, UpdateSettings, update
 from debrisest.filters.runs import take
@@ -40,17 +41,24 @@ def landmark_filter(
     annealing: Annealing = Annealing(),  # noqa: B008
     keep: Sequence[int] = (),
     anchors: Mapping[int, tuple[Belief, BoolArray]] = MappingProxyType({}),
+    untold: Array | None = None,
 ) -> Estimates:
     """Filter all runs from their belief of epoch 0.
 
     ``present (run, N)`` are the landmarks that it holds; frames up to ``used_up (run,)`` are
     already in it, so that it is only predicted until then (-1: none). At the epochs of ``anchors``
     a better belief of all runs, and the landmarks that it holds, take the place of the filter's.
+    ``untold (run, g, g)`` is all that is known along the model's gauge (`gauge.information`); what
+    the filter claims beyond that is taken out of the covariance that it tells, and counted as
+    ``claimed``, how many times as much.
     """
-    counts, totals = {"rejected": 0, "updates": 0}, ["dropped"]
+    counts: dict[str, float] = {"rejected": 0, "updates": 0}
+    counts |= {} if untold is None else {"claimed": np.nan}
     start = joined(belief.core, belief.points), belief.covariance
     epochs = observed.seen.shape[1]
-    writer = EstimatesWriter(model.error_names, *start, epochs, keep, counts, totals, ReplayStatus)
+    writer = EstimatesWriter(
+        model.error_names, *start, epochs, keep, counts, ["dropped"], ReplayStatus
+    )
     tracks, going = begin(present), writer.runs
     with np.errstate(all="ignore"):
         for k in range(epochs):
@@ -69,8 +77,12 @@ def landmark_filter(
                 better, present = anchors[k]
                 belief, tracks = take(better, writer.runs), begin(present[writer.runs])
             confirmed = np.where(tracks.confirmed[..., None], belief.points, np.nan)
+            told = belief.covariance
+            if untold is not None:
+                known = untold[writer.runs]
+                told, figures["claimed"] = honest(model, belief, tracks.confirmed, known)
             going = writer.record(
-                *(k, joined(belief.core, belief.points), belief.covariance, figures),
+                *(k, joined(belief.core, belief.points), told, figures),
                 shown=joined(belief.core, confirmed),
             )
     return writer.estimates()

@@ -12,12 +12,13 @@ from debrisest.filters.estimates import Estimates
 from debrisest.filters.landmark_model import LandmarkModel, core_of, points_of, split
 from debrisest.filters.landmarks.against_truth import costs
 from debrisest.filters.landmarks.batch_start import Batch, Problem, batch_problem
+from debrisest.filters.landmarks.gauge import information
 from debrisest.filters.landmarks.growing_windows import Window
 from debrisest.filters.landmarks.landmark_filter import Annealing, landmark_filter
 from debrisest.filters.landmarks.self_tests import self_tests
 from debrisest.filters.landmarks.update import Belief, UpdateSettings
 from debrisest.filters.landmarks.whole_arc import Arc, whole_arc, window_ends
-from debrisest.filters.self_test import SelfTest, cost_test, told
+from debrisest.filters.self_test import SelfTest, cost_test, gauge_test, told
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given, NonNegative, Positive
 
@@ -122,8 +123,12 @@ class LandmarkBatch(_LandmarkFilter):
 
 
 class LandmarkFilter(_LandmarkFilter):
-    """The iterated filter from the first frame on: free gauge, noise annealed."""
+    """The iterated filter from the first frame on: free gauge, noise annealed.
 
+    The sigmas that it tells take nothing for known about the gauge that was not known at the start.
+    """
+
+    version = 5
     kind: Literal["landmark_filter"]
     annealing: NonNegative = 100.0
     """The variance of the noise is multiplied by 1 + this at time zero."""
@@ -140,17 +145,22 @@ class LandmarkFilter(_LandmarkFilter):
         inner = given.covariance[:, held:n_c, held:n_c]
         covariance[:, :n_c, :n_c] = by_parameters @ inner @ np.swapaxes(by_parameters, -1, -2)
         covariance[:, :held, :held] += given.covariance[:, :held, :held]
+        begun = Belief(core, np.zeros((runs, model.landmarks, 3)), covariance)
         found = landmark_filter(
             model,
-            Belief(core, np.zeros((runs, model.landmarks, 3)), covariance),
+            begun,
             np.zeros((runs, model.landmarks), dtype=np.bool_),
             np.full(runs, -1),
             observed,
             self._settings(),
             Annealing(self.annealing, self.annealing_s / given.clock.step),
             keep=kept_epochs(self.keep_s, given.clock),
+            untold=information(model, begun),
         )
-        return told(found, [_innovations(found)])
+        tests = [_innovations(found)]
+        if "claimed" in found.counts:
+            tests.append(gauge_test(found.counts.pop("claimed")[:, -1]))
+        return told(found, tests)
 
 
 def _windows(ends: Iterable[tuple[float, float]], clock: Clock) -> list[Window]:

@@ -11,6 +11,7 @@ from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics.pointing import camera_axes
 from debrisest.filters.landmark_model import LandmarkModel, Rows
 from debrisest.problems.camera_range import model as motion
+from debrisest.problems.camera_range.gauge import turn_of_axes
 from debrisest.problems.camera_range.model import (
     ATTITUDE_ERROR,
     CORE,
@@ -50,6 +51,7 @@ def landmark_model(known: CameraRangeGeometry) -> LandmarkModel:
         retract=motion.retract,
         difference=motion.difference,
         of=lambda runs: landmark_model(known.of(runs)),
+        gauge=turn_of_axes,
     )
 
 
