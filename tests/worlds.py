@@ -31,7 +31,7 @@ VARIANCES = {"q_ib": 1e-2, "q_bf": 0.1, "rate_rad2_s2": 2e-2, "moments": 0.02}
 SPREAD = {"attitude_rad2": 1.0, "rate_rad2_s2": 0.1, "log_inertia": 0.16}
 PURSUIT = {"attitude": ["triad", "wahba"], "penalty": [0.3], "iterations": [5]}
 MEASURES = {"measures": [["pixels"], ["acceleration"], ["flow", "disparity"]]}
-MEASURES |= {"score_delay_s": [0.0, 1e4]}
+MEASURES |= {"score_delay_s": [0.0, 1e4], "pixel_noise_px": [None, 1e-4]}
 KEYS: dict[str, dict[str, list[Any]]] = {
     "rigid_points": {"inertia_kg_m2": [[0.6, 0.7, 0.3], [1.0, 1.0, 2.0]], "points": [CORNERS]},
     "random_points": {"count": [5, 4], "half_size_m": [1.5], "inertia_ratios": [[-0.19, -0.08]]},
@@ -61,10 +61,12 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "detections": {"missing_share": [0.0, 0.95], "pixel_noise_px": [1.0, 0.0]},
     "camera_range": {"missing_share": [0.0, 0.9, 1.0], "false_match_share": [0.0, 1.0]}
     | {"dark_s": [[], [[0, 1e5]]], "half_size_px": [[500, 500], [1, 1]]},
-    "drawn_pose": {"position_sigma_m": [1], "velocity_sigma_m_s": [1], "rate_sigma_deg_s": [1]}
+    "drawn_pose": {"position_sigma_m": [1], "velocity_sigma_m_s": [1, [1, 2, 0.5]]}
+    | {"rate_sigma_deg_s": [1]}
     | {"q_sigma": [3e-3], "inertia_ratio_sigma": [0.7], "point_sigma_m": [1]}
     | {"bodies_only": [False, True]},
-    "drawn_orbit": {"position_sigma_m": [100], "velocity_sigma_m_s": [100]},
+    "drawn_orbit": {"position_sigma_m": [100, [100, 50, 1]], "velocity_sigma_m_s": [100]},
+    "drawn_shape": {"position_sigma_m": [2.0, [1.0, 3.0, 2.0]]},
     "basis_pursuit": PURSUIT
     | {"signs": [{}, {"keep_hypotheses": True}]}
     | {"exact_recovery": [False, True]},
@@ -77,6 +79,8 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "stereo_pose_additive": MEASURES | {"transition": ["exact", "first_order"]},
     "camera_range_minimal": {"camera_attitude": ["known", "implied"]}
     | {"range_to": ["centre", "bias", "landmark"], "gauge_sigma_deg": [0.0, 5.0]},
+    "camera_range_redundant": {"pixel_noise_px": [None, 3.0]}
+    | {"process_noise": [{}, {"rate_rad_s": 1e-6}]},
     "orbit_from_pixels": {"acceleration_noise_m_s2": [0.1, 0.0], "tracks": ["debris", "all"]}
     | {"attitude_bias": [False, True], "detections": ["all", "own"]},
     "first_samples": {"samples": [5, 1000], "variance": [VARIANCES]},

@@ -3,7 +3,15 @@
 from typing import Annotated, Any, TypeVar
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetJsonSchemaHandler
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+    Tag,
+)
 
 from debrisest.roles.docstrings import attribute_docstrings
 
@@ -13,6 +21,18 @@ Window = tuple[float, float]
 Vector3 = Annotated[list[float], Field(min_length=3, max_length=3)]
 Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
+
+
+def _one_or_axes(given: object) -> str:
+    return "axes" if isinstance(given, list) else "one"
+
+
+PerAxis = Annotated[
+    Annotated[Positive, Tag("one")]
+    | Annotated[list[Positive], Field(min_length=3, max_length=3), Tag("axes")],
+    Discriminator(_one_or_axes),
+]
+"""The same for all three axes, or one for each."""
 
 
 def _unit_quaternion(q: list[float]) -> list[float]:
