@@ -39,13 +39,17 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "kepler": ELEMENTS,
     "perturbed": ELEMENTS | {"j2": [True, False]},
     "torque_free": {"rate_deg_s": [[7.2, 5.5, -1.6], [0, 0, 0], [100.0, 50.0, 30.0]]},
-    "gravity_gradient": {"rate_deg_s": [[0.6, 0.4, 1.0], [0, 0, 0]]},
+    "gravity_gradient": {"rate_deg_s": [[0.6, 0.4, 1.0], [0, 0, 0]]}
+    | {"torque_n_m": [[0, 0, 0], [1e-4, 0, -1e-5]]},
     "random_tumble": {"rate_deg_s": [[1.0, 8.0]]},
     "seen_from_leader": {"position_m": [[10, 60, 10], [0.5, 4, 0.5]]}
-    | {"velocity_m_s": [[0.01, -0.02, -0.01]], "rate_deg_s": [[-0.1, -0.1, 0.03], [20, 30, 5]]},
+    | {"velocity_m_s": [[0.01, -0.02, -0.01]], "rate_deg_s": [[-0.1, -0.1, 0.03], [20, 30, 5]]}
+    | {"torque_deg_s2": [[0, 0, 0], [1e-3, 0, 1e-2]]},
     "hold": {"position_m": [[0, 30, 0]]},
     "drift": {"position_m": [[0, 30, 0]]},
     "closed_ellipse": {"position_m": [[0, 17.3, 5.9]], "velocity_m_s": [[9e-3, 0, -1e-3]]},
+    "relative_orbit": {"position_m": [[0, 17.3, 5.9]]}
+    | {"velocity_m_s": [[9e-3, 0, -1e-3], [0, 0.1, 0]]},
     "satellite": SATELLITE,
     "feature_points": {"noise_m": [1e-2, 0.0, 10.0], "visibility": ["all", "back_face"]}
     | {"missing_share": [0.0, 0.9], "outages_s": [[], [[1, 3], [2, 1e4]]]}
