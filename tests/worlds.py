@@ -93,7 +93,8 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "extended": {"iterations": [1, 10], "gate": [False, True]},
     "replay": {"smoother": [False, True], "gate": [False, True]},
     "efficient": {"smoother": [False, True]},
-    "association": {"method": ["probabilistic", "nearest"], "linearised": ["estimate", "start"]},
+    "association": {"method": ["probabilistic", "nearest"], "linearised": ["estimate", "start"]}
+    | {"gate_dimension": [None, 4]},
     "landmark_batch": {"windows_s": [[5.0, 10.0]], "spacing_s": [[1.0, 2.0]], "restarts": [0]}
     | {"batch_iterations": [3]},
 }
