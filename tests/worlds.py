@@ -53,6 +53,7 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "satellite": SATELLITE,
     "feature_points": {"noise_m": [1e-2, 0.0, 10.0], "visibility": ["all", "back_face"]}
     | {"missing_share": [0.0, 0.9], "outages_s": [[], [[1, 3], [2, 1e4]]]}
+    | {"slow_s": [[], [{"span_s": [0, 5], "every_s": 3}]]}
     | {"attitude_noise_deg": [0.0, 1.0], "feature_error_m": [0.0, 0.1]},
     "stereo_camera": {"baseline_m": [1], "pixel_noise_px": [1e-5, 1e-2], "from_s": [1.0, 1e3]}
     | {"flow_noise_px_s": [1e-5], "disparity_noise_px": [1e-5], "outlier_share": [0.0, 1.0]},
