@@ -21,6 +21,9 @@ ELEMENTS = {"semi_major_axis_km": [7493], "eccentricity": [0.1, 0.0], "inclinati
 SATELLITE = ELEMENTS | {"semi_major_axis_km": [7500], "inclination_deg": [30]} | {
     "raan_deg": [10, 7], "argument_of_periapsis_deg": [90]
 }  # fmt: skip
+AIR = {"area_to_mass_m2_kg": 0.1, "density_kg_m3": 6e-12, "altitude_km": 366} | {
+    "scale_height_km": 60
+}  # fmt: skip
 CORNERS = {
     "a": {"position_m": [1.0, 0.0, 0.5], "normal": [1, 0, 0]},
     "b": {"position_m": [0.0, 1.2, -0.4], "normal": [0, 1, 0]},
@@ -37,7 +40,9 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "random_points": {"count": [5, 4], "half_size_m": [1.5], "inertia_ratios": [[-0.19, -0.08]]},
     "random_box": {"count": [4], "half_side_m": [[0.5, 1.0]]},
     "kepler": ELEMENTS,
-    "perturbed": ELEMENTS | {"j2": [True, False]},
+    "perturbed": ELEMENTS
+    | {"j2": [True, False], "acceleration_m_s2": [[0, 0, 0], [1e-6, 0, 0]]}
+    | {"air": [None, AIR], "acceleration_noise_m_s2": [0.0, [0.1, 0.0, 0.2]]},
     "torque_free": {"rate_deg_s": [[7.2, 5.5, -1.6], [0, 0, 0], [100.0, 50.0, 30.0]]},
     "gravity_gradient": {"rate_deg_s": [[0.6, 0.4, 1.0], [0, 0, 0]]}
     | {"torque_n_m": [[0, 0, 0], [1e-4, 0, -1e-5]]},
@@ -86,7 +91,10 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     | {"range_to": ["centre", "bias", "landmark"], "gauge_sigma_deg": [0.0, 5.0]},
     "camera_range_redundant": {"pixel_noise_px": [None, 3.0]}
     | {"process_noise": [{}, {"rate_rad_s": 1e-6}]},
-    "orbit_from_pixels": {"acceleration_noise_m_s2": [0.1, 0.0], "tracks": ["debris", "all"]}
+    "orbit_from_pixels": {
+        "acceleration_noise_m_s2": [0.1, 0.0, [0.1, 0.2, 0.0]],
+        "tracks": ["debris", "all"],
+    }
     | {"attitude_bias": [False, True], "detections": ["all", "own"]},
     "first_samples": {"samples": [5, 1000], "variance": [VARIANCES]},
     "first_points": {"samples": [5, 1000], "variance": [SPREAD]},

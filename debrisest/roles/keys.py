@@ -23,18 +23,6 @@ Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
 
 
-def _one_or_axes(given: object) -> str:
-    return "axes" if isinstance(given, list) else "one"
-
-
-PerAxis = Annotated[
-    Annotated[Positive, Tag("one")]
-    | Annotated[list[Positive], Field(min_length=3, max_length=3), Tag("axes")],
-    Discriminator(_one_or_axes),
-]
-"""The same for all three axes, or one for each."""
-
-
 def _unit_quaternion(q: list[float]) -> list[float]:
     norm = float(np.linalg.norm(q))
     if not abs(norm - 1) < 1e-3:
@@ -62,6 +50,18 @@ Limits = Annotated[
     AfterValidator(_ascending),
 ]
 """Lower and upper limit, such as ``Limits[Positive]``."""
+
+
+def _one_or_axes(given: object) -> str:
+    return "axes" if isinstance(given, list) else "one"
+
+
+PerAxis = Annotated[
+    Annotated[_Number, Tag("one")]
+    | Annotated[list[_Number], Field(min_length=3, max_length=3), Tag("axes")],
+    Discriminator(_one_or_axes),
+]
+"""The same for all three axes, or one for each, such as ``PerAxis[Positive]``."""
 
 
 class Keys(BaseModel):

@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws, drawn_about
-from debrisest.roles import PerAxis, SimulationPart
+from debrisest.roles import PerAxis, Positive, SimulationPart
 
 
 class DrawnOrbit(SimulationPart):
@@ -16,9 +16,9 @@ class DrawnOrbit(SimulationPart):
     needs = ("orbit_position", "orbit_velocity")
     knows = ("start_orbit_position", "start_orbit_velocity")
     kind: Literal["drawn_orbit"]
-    position_sigma_m: PerAxis
+    position_sigma_m: PerAxis[Positive]
     """Standard deviation of the position, inertial axes."""
-    velocity_sigma_m_s: PerAxis
+    velocity_sigma_m_s: PerAxis[Positive]
     """Standard deviation of the velocity, inertial axes."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:

@@ -22,18 +22,18 @@ class DrawnPose(SimulationPart):
     needs = tuple(f"true_{name}" for name in _NAMES)
     knows = tuple(f"start_{name}" for name in _NAMES)
     kind: Literal["drawn_pose"]
-    position_sigma_m: PerAxis
+    position_sigma_m: PerAxis[Positive]
     """Standard deviation of the position, leader's axes."""
-    velocity_sigma_m_s: PerAxis
+    velocity_sigma_m_s: PerAxis[Positive]
     """Standard deviation of the velocity, leader's axes."""
-    rate_sigma_deg_s: PerAxis
+    rate_sigma_deg_s: PerAxis[Positive]
     """Standard deviation of the rate, leader's axes."""
     q_sigma: Positive
     """Standard deviation of each component of `q_lt`, which is then normalised; an angle's is twice
     that."""
     inertia_ratio_sigma: Positive | None
     """Standard deviation of each inertia ratio; null: another start gives the ratios."""
-    point_sigma_m: PerAxis
+    point_sigma_m: PerAxis[Positive]
     """Standard deviation of the features, target's axes."""
     bodies_only: bool = False
     """Draw inertia ratios again until no moment exceeds the sum of the others."""

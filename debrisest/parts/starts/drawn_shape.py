@@ -30,15 +30,15 @@ class DrawnShape(SimulationPart):
         )
     )
     kind: Literal["drawn_shape"]
-    position_sigma_m: PerAxis = 2.0
+    position_sigma_m: PerAxis[Positive] = 2.0
     """Standard deviation of each component of the chaser's position, which then gets the length of
     the first range."""
-    velocity_sigma_m_s: PerAxis = 0.03
+    velocity_sigma_m_s: PerAxis[Positive] = 0.03
     """Standard deviation of each component of the chaser's velocity, which is guessed to be
     zero."""
     q_sigma: Positive = 1e-3
     """Standard deviation of each component of the attitude, which is exact by definition."""
-    rate_sigma_deg_s: PerAxis = 0.3
+    rate_sigma_deg_s: PerAxis[Positive] = 0.3
     """Standard deviation of each component of the rate."""
     inertia_sigma_kg_m2: Positive = 1.0
     """Standard deviation of each element of the inertia tensor."""
