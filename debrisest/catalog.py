@@ -56,6 +56,7 @@ from debrisest.parts.truth.random_points import RandomPoints
 from debrisest.parts.truth.random_rigid_body import RandomRigidBody
 from debrisest.parts.truth.random_torque_free import RandomTorqueFree
 from debrisest.parts.truth.random_tumble import RandomTumble
+from debrisest.parts.truth.relative_orbit import RelativeOrbit
 from debrisest.parts.truth.rigid_points import RigidPoints
 from debrisest.parts.truth.satellite import Satellite
 from debrisest.parts.truth.seen_from_leader import SeenFromLeader
@@ -89,7 +90,7 @@ CATALOG: dict[str, list[type[Part]]] = {
     "target": [RigidPoints, RandomPoints, RandomBox, RandomRigidBody, TexturedBody],
     "orbit": [KeplerOrbit, PerturbedOrbit],
     "motion": [TorqueFree, GravityGradient, SeenFromLeader, RandomTumble, RandomTorqueFree],
-    "observers": [Hold, Drift, Satellite, ClosedEllipse, Still],
+    "observers": [Hold, Drift, Satellite, ClosedEllipse, RelativeOrbit, Still],
     "sensors": [
         FeaturePoints,
         StereoCamera,

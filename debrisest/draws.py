@@ -55,7 +55,7 @@ class Draws:
         return self._generators[stream]
 
 
-def drawn_about(name: str, true: Array, sigma: float, draws: Draws) -> Data:
-    """Return a first guess of ``true`` (run, ...) and its sigma, by name."""
+def drawn_about(name: str, true: Array, sigma: Array | float, draws: Draws) -> Data:
+    """Return a first guess of ``true`` (run, ...) and its sigma (...), by name."""
     noise = draws.normal(Stream.INITIAL_ERROR, true.shape[1:])
     return {name: true + sigma * noise, f"{name}_sigma": np.full(true.shape, sigma)}

@@ -58,6 +58,8 @@ def _held(told: Schema) -> Iterator[tuple[str, str]]:
     for one in (told, *told.get("anyOf", ())):
         if "$ref" in one:
             yield _name(one), ""
+        if "$ref" in one.get("items", ()):
+            yield _name(one["items"]), ""
         if "$ref" in one.get("additionalProperties", ()):
             yield _name(one["additionalProperties"]), "NAME."
 

@@ -21,6 +21,9 @@ ELEMENTS = {"semi_major_axis_km": [7493], "eccentricity": [0.1, 0.0], "inclinati
 SATELLITE = ELEMENTS | {"semi_major_axis_km": [7500], "inclination_deg": [30]} | {
     "raan_deg": [10, 7], "argument_of_periapsis_deg": [90]
 }  # fmt: skip
+AIR = {"area_to_mass_m2_kg": 0.1, "density_kg_m3": 6e-12, "altitude_km": 366} | {
+    "scale_height_km": 60
+}  # fmt: skip
 CORNERS = {
     "a": {"position_m": [1.0, 0.0, 0.5], "normal": [1, 0, 0]},
     "b": {"position_m": [0.0, 1.2, -0.4], "normal": [0, 1, 0]},
@@ -31,24 +34,31 @@ VARIANCES = {"q_ib": 1e-2, "q_bf": 0.1, "rate_rad2_s2": 2e-2, "moments": 0.02}
 SPREAD = {"attitude_rad2": 1.0, "rate_rad2_s2": 0.1, "log_inertia": 0.16}
 PURSUIT = {"attitude": ["triad", "wahba"], "penalty": [0.3], "iterations": [5]}
 MEASURES = {"measures": [["pixels"], ["acceleration"], ["flow", "disparity"]]}
-MEASURES |= {"score_delay_s": [0.0, 1e4]}
+MEASURES |= {"score_delay_s": [0.0, 1e4], "pixel_noise_px": [None, 1e-4]}
 KEYS: dict[str, dict[str, list[Any]]] = {
     "rigid_points": {"inertia_kg_m2": [[0.6, 0.7, 0.3], [1.0, 1.0, 2.0]], "points": [CORNERS]},
     "random_points": {"count": [5, 4], "half_size_m": [1.5], "inertia_ratios": [[-0.19, -0.08]]},
     "random_box": {"count": [4], "half_side_m": [[0.5, 1.0]]},
     "kepler": ELEMENTS,
-    "perturbed": ELEMENTS | {"j2": [True, False]},
+    "perturbed": ELEMENTS
+    | {"j2": [True, False], "acceleration_m_s2": [[0, 0, 0], [1e-6, 0, 0]]}
+    | {"air": [None, AIR], "acceleration_noise_m_s2": [0.0, [0.1, 0.0, 0.2]]},
     "torque_free": {"rate_deg_s": [[7.2, 5.5, -1.6], [0, 0, 0], [100.0, 50.0, 30.0]]},
-    "gravity_gradient": {"rate_deg_s": [[0.6, 0.4, 1.0], [0, 0, 0]]},
+    "gravity_gradient": {"rate_deg_s": [[0.6, 0.4, 1.0], [0, 0, 0]]}
+    | {"torque_n_m": [[0, 0, 0], [1e-4, 0, -1e-5]]},
     "random_tumble": {"rate_deg_s": [[1.0, 8.0]]},
     "seen_from_leader": {"position_m": [[10, 60, 10], [0.5, 4, 0.5]]}
-    | {"velocity_m_s": [[0.01, -0.02, -0.01]], "rate_deg_s": [[-0.1, -0.1, 0.03], [20, 30, 5]]},
+    | {"velocity_m_s": [[0.01, -0.02, -0.01]], "rate_deg_s": [[-0.1, -0.1, 0.03], [20, 30, 5]]}
+    | {"torque_deg_s2": [[0, 0, 0], [1e-3, 0, 1e-2]]},
     "hold": {"position_m": [[0, 30, 0]]},
     "drift": {"position_m": [[0, 30, 0]]},
     "closed_ellipse": {"position_m": [[0, 17.3, 5.9]], "velocity_m_s": [[9e-3, 0, -1e-3]]},
+    "relative_orbit": {"position_m": [[0, 17.3, 5.9]]}
+    | {"velocity_m_s": [[9e-3, 0, -1e-3], [0, 0.1, 0]]},
     "satellite": SATELLITE,
     "feature_points": {"noise_m": [1e-2, 0.0, 10.0], "visibility": ["all", "back_face"]}
     | {"missing_share": [0.0, 0.9], "outages_s": [[], [[1, 3], [2, 1e4]]]}
+    | {"slow_s": [[], [{"span_s": [0, 5], "every_s": 3}]]}
     | {"attitude_noise_deg": [0.0, 1.0], "feature_error_m": [0.0, 0.1]},
     "stereo_camera": {"baseline_m": [1], "pixel_noise_px": [1e-5, 1e-2], "from_s": [1.0, 1e3]}
     | {"flow_noise_px_s": [1e-5], "disparity_noise_px": [1e-5], "outlier_share": [0.0, 1.0]},
@@ -61,10 +71,12 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "detections": {"missing_share": [0.0, 0.95], "pixel_noise_px": [1.0, 0.0]},
     "camera_range": {"missing_share": [0.0, 0.9, 1.0], "false_match_share": [0.0, 1.0]}
     | {"dark_s": [[], [[0, 1e5]]], "half_size_px": [[500, 500], [1, 1]]},
-    "drawn_pose": {"position_sigma_m": [1], "velocity_sigma_m_s": [1], "rate_sigma_deg_s": [1]}
+    "drawn_pose": {"position_sigma_m": [1], "velocity_sigma_m_s": [1, [1, 2, 0.5]]}
+    | {"rate_sigma_deg_s": [1]}
     | {"q_sigma": [3e-3], "inertia_ratio_sigma": [0.7], "point_sigma_m": [1]}
     | {"bodies_only": [False, True]},
-    "drawn_orbit": {"position_sigma_m": [100], "velocity_sigma_m_s": [100]},
+    "drawn_orbit": {"position_sigma_m": [100, [100, 50, 1]], "velocity_sigma_m_s": [100]},
+    "drawn_shape": {"position_sigma_m": [2.0, [1.0, 3.0, 2.0]]},
     "basis_pursuit": PURSUIT
     | {"signs": [{}, {"keep_hypotheses": True}]}
     | {"exact_recovery": [False, True]},
@@ -77,7 +89,12 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "stereo_pose_additive": MEASURES | {"transition": ["exact", "first_order"]},
     "camera_range_minimal": {"camera_attitude": ["known", "implied"]}
     | {"range_to": ["centre", "bias", "landmark"], "gauge_sigma_deg": [0.0, 5.0]},
-    "orbit_from_pixels": {"acceleration_noise_m_s2": [0.1, 0.0], "tracks": ["debris", "all"]}
+    "camera_range_redundant": {"pixel_noise_px": [None, 3.0]}
+    | {"process_noise": [{}, {"rate_rad_s": 1e-6}]},
+    "orbit_from_pixels": {
+        "acceleration_noise_m_s2": [0.1, 0.0, [0.1, 0.2, 0.0]],
+        "tracks": ["debris", "all"],
+    }
     | {"attitude_bias": [False, True], "detections": ["all", "own"]},
     "first_samples": {"samples": [5, 1000], "variance": [VARIANCES]},
     "first_points": {"samples": [5, 1000], "variance": [SPREAD]},
@@ -85,7 +102,8 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "extended": {"iterations": [1, 10], "gate": [False, True]},
     "replay": {"smoother": [False, True], "gate": [False, True]},
     "efficient": {"smoother": [False, True]},
-    "association": {"method": ["probabilistic", "nearest"], "linearised": ["estimate", "start"]},
+    "association": {"method": ["probabilistic", "nearest"], "linearised": ["estimate", "start"]}
+    | {"gate_dimension": [None, 4]},
     "landmark_batch": {"windows_s": [[5.0, 10.0]], "spacing_s": [[1.0, 2.0]], "restarts": [0]}
     | {"batch_iterations": [3]},
 }

@@ -7,6 +7,7 @@ is what is handed over as acceleration.
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.dynamics.drag import Drag, drag_acceleration
 from debrisest.dynamics.kepler import MU_EARTH
 
 J2_EARTH = 1.08262668e-3
@@ -33,10 +34,12 @@ def propagate(
     j2: float = 0.0,
     acceleration: Array | None = None,
     mu: float = MU_EARTH,
+    drag: Drag | None = None,
 ) -> tuple[Array, Array]:
     """Position and velocity ``(..., time, 3)`` at ``times (time,)``, the first of them the start's.
 
-    ``acceleration (..., time - 1, 3)``, m/s^2, acts in addition, each from one time to the next.
+    ``acceleration (..., time - 1, 3)``, m/s^2, acts in addition, each from one time to the next,
+    and so does ``drag``.
     """
     extra = np.zeros((len(times) - 1, 3)) if acceleration is None else acceleration
     state = np.concatenate([position, velocity], axis=-1)
@@ -44,7 +47,7 @@ def propagate(
     found = np.empty((*state.shape[:-1], len(times), 6))
     found[..., 0, :] = state
     for k, span in enumerate(np.diff(times)):
-        state = advance(state, float(span), j2, extra[..., k, :], mu)
+        state = advance(state, float(span), j2, extra[..., k, :], mu, drag)
         found[..., k + 1, :] = state
     return found[..., :3], found[..., 3:]
 
@@ -55,11 +58,12 @@ def advance(
     j2: float = 0.0,
     acceleration: Array | float = 0.0,
     mu: float = MU_EARTH,
+    drag: Drag | None = None,
 ) -> Array:
     """State ``(..., 6)``, position and velocity, ``span`` seconds later."""
     count = _steps(span)
     for _ in range(count):
-        state = _runge_kutta(state, span / count, j2, acceleration, mu)
+        state = _runge_kutta(state, span / count, j2, acceleration, mu, drag)
     return state
 
 
@@ -82,11 +86,20 @@ def _steps(span: float) -> int:
     return max(1, int(np.ceil(span / LONGEST_STEP - 1e-9)))
 
 
-def _runge_kutta(state: Array, step: float, j2: float, extra: Array | float, mu: float) -> Array:
+def _runge_kutta(
+    state: Array,
+    step: float,
+    j2: float,
+    extra: Array | float,
+    mu: float,
+    drag: Drag | None = None,
+) -> Array:
     def derivative(now: Array) -> Array:
         result = np.empty_like(now)
         result[..., :3] = now[..., 3:]
         result[..., 3:] = gravity(now[..., :3], j2, mu) + extra
+        if drag is not None:
+            result[..., 3:] += drag_acceleration(now[..., :3], now[..., 3:], drag)
         return result
 
     k1 = derivative(state)

@@ -3,7 +3,15 @@
 from typing import Annotated, Any, TypeVar
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetJsonSchemaHandler
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+    Tag,
+)
 
 from debrisest.roles.docstrings import attribute_docstrings
 
@@ -42,6 +50,18 @@ Limits = Annotated[
     AfterValidator(_ascending),
 ]
 """Lower and upper limit, such as ``Limits[Positive]``."""
+
+
+def _one_or_axes(given: object) -> str:
+    return "axes" if isinstance(given, list) else "one"
+
+
+PerAxis = Annotated[
+    Annotated[_Number, Tag("one")]
+    | Annotated[list[_Number], Field(min_length=3, max_length=3), Tag("axes")],
+    Discriminator(_one_or_axes),
+]
+"""The same for all three axes, or one for each, such as ``PerAxis[Positive]``."""
 
 
 class Keys(BaseModel):

@@ -93,3 +93,17 @@ def test_the_first_epoch_alone() -> None:
     q, rate = tumble(np.zeros(1), IDENTITY, ALONG_NORMAL, np.eye(3), orbit)
     np.testing.assert_allclose(q, [IDENTITY], atol=1e-15)
     np.testing.assert_allclose(rate, [ALONG_NORMAL], atol=1e-15)
+
+
+def test_a_torque_about_a_principal_axis_turns_faster_and_faster() -> None:
+    """Closed form: the rate grows linearly, the angle with the square of the time."""
+    times, moment = np.arange(0.0, 200.0, 10.0), 700.0
+    torque = np.array([0.0, 0.07, 0.0])
+    start = np.array([0.0, 1e-3, 0.0])
+    inertia = np.diag([500.0, moment, 800.0])
+    q, rate = tumble(times, IDENTITY, start, inertia, far_away, torque)
+    np.testing.assert_allclose(rate[:, 1], 1e-3 + 1e-4 * times, rtol=1e-10)
+    angle = 1e-3 * times + 0.5e-4 * times**2
+    turned = Rotation.from_rotvec(angle[:, None] * [0.0, 1.0, 0.0])
+    error = turned.inv() * Rotation.from_quat(q, scalar_first=True)
+    assert np.abs(error.magnitude()).max() < 1e-9

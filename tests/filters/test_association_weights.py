@@ -50,6 +50,17 @@ def test_the_printed_weight_is_too_large_by_the_square_of_the_unit_circle() -> N
     )
 
 
+@pytest.mark.parametrize(("ball", "factor"), [(None, 0.8), (inverse_unit_ball, 1.97)])
+def test_four_dimensions_change_the_weight_of_absence(ball, factor) -> None:
+    """b(4) / b(2) = (2 pi / gamma) C_2 / C_4 with C_2 = pi, C_4 = pi^2 / 2; inverse as printed."""
+    rule = Validation(gate=5.0, detection_probability=0.7, gate_probability=0.9)
+    rule = rule if ball is None else rule._replace(ball=ball)
+    b = absence_weight(3, rule._replace(dimension=4), 2) / absence_weight(3, rule, 2)
+    volumes = 2 / np.pi if ball is None else np.pi / 2
+    assert b == pytest.approx(2 * np.pi / 5 * volumes, rel=1e-12)
+    assert b == pytest.approx(factor, abs=5e-3)
+
+
 def test_the_probability_of_the_gate_is_that_of_chi_square() -> None:
     assert Validation(gate=chi2.ppf(0.9, 2)).passing(2) == pytest.approx(0.9, abs=1e-12)
     assert Validation(gate=5.0).passing(4) == pytest.approx(0.7127, abs=5e-5)

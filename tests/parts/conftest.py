@@ -18,7 +18,7 @@ SLOW = [-0.1, -0.1, 0.034]
 def simulated() -> Callable:
     """Simulate a random target seen from an eccentric orbit, and further parts."""
 
-    def run(*parts, runs=4, duration=10.0, step=1.0, rate=SLOW, first=0, seed=1):
+    def run(*parts, runs=4, duration=10.0, step=1.0, rate=SLOW, first=0, seed=1, torque=(0, 0, 0)):
         clock = Clock.regular(duration, step)
         draws = Draws(seed, "case", list(range(first, first + runs)))
         data = {"time_s": clock.times, "run": np.arange(runs)}
@@ -32,6 +32,7 @@ def simulated() -> Callable:
             velocity_m_s=[0.01, -0.0225, -0.01],
             q_lt=[0.0, 0.0, 0.0, 1.0],
             rate_deg_s=rate,
+            torque_deg_s2=list(torque),
         )
         for part in (target, orbit, motion, *parts):
             data |= part.simulate(data, clock, draws)

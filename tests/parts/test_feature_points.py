@@ -70,6 +70,15 @@ def test_outages_and_drop_outs_add_up() -> None:
     assert np.all(np.isfinite(measured()["measured_point"]))
 
 
+def test_a_slow_window_shows_every_so_manyth_epoch_from_its_first_on() -> None:
+    slow = [{"span_s": [100, 200], "every_s": 5}, {"span_s": [201, 211], "every_s": 3.2}]
+    seen = np.isfinite(measured(slow_s=slow)["measured_point"]).all((0, 2, 3))
+    fast = np.r_[0:100, 200, 211:EPOCHS]
+    assert np.flatnonzero(seen).tolist() == sorted(
+        [*fast, *range(100, 200, 5), *range(201, 211, 3)]
+    )
+
+
 def test_depth_is_noisier_than_what_lies_across() -> None:
     """Along (3, 0, 4) / 5 three times the noise, across it as it is given; told is the RMS."""
     position = np.array([30.0, 0.0, 40.0])

@@ -41,3 +41,21 @@ def test_initial_rates_are_round_about_the_body(simulated: Callable) -> None:
     rate = data["true_rate_l"][0, 0] + np.radians([0, 0, 0.065936])
     body = quaternion.rotate(quaternion.conjugate(data["true_q_lt"][0, 0]), rate)
     assert np.degrees(body) == pytest.approx([0.1, 0.1, 0.1], abs=1e-4)
+
+
+def test_a_torque_changes_the_angular_momentum_as_it_should(simulated: Callable) -> None:
+    """In inertial axes, those of the leader at first: dH/dt = torque, by differences in time."""
+    torque = np.radians([2e-3, -1e-3, 3e-3])
+    data = simulated(runs=2, duration=4.0, step=STEP, torque=np.degrees(torque).tolist())
+    anomaly = np.arctan2(*data["orbit_position"][0, :, [1, 0]])
+    turn = np.gradient(anomaly, STEP)[:, None] * [0.0, 0.0, 1.0]
+    half, zero = 0.5 * (anomaly - anomaly[0]), 0.0 * anomaly
+    q_it = quaternion.multiply(
+        np.stack([np.cos(half), zero, zero, np.sin(half)], -1), data["true_q_lt"]
+    )
+    moments = data["true_inertia_b"][0].diagonal()
+    back = quaternion.conjugate(data["true_q_lt"])
+    momentum = moments * quaternion.rotate(back, data["true_rate_l"] + turn)
+    slope = np.gradient(quaternion.rotate(q_it, momentum), STEP, axis=1)[:, 2:-2]
+    expected = quaternion.rotate(q_it, np.broadcast_to(moments * torque, momentum.shape))
+    assert slope == pytest.approx(expected[:, 2:-2], abs=1e-3 * np.abs(torque).max())

@@ -13,7 +13,7 @@ from debrisest.scenario.resolved import resolved
 from debrisest.show.tables.tabulate import tabulate
 from tests.worlds import KEYS, World, loaded
 
-SEEDS = range(24)
+SEEDS = range(30)
 
 
 @pytest.fixture(scope="module")

@@ -31,6 +31,8 @@ class Validation(NamedTuple):
     """That the target's detection passes the gate, P_G; without it, what chi-square says."""
     ball: Callable[[int], float] = unit_ball
     """Volume of the gate by d, for |S| = gamma = 1, by which clutter is spread in it."""
+    dimension: int | None = None
+    """What the weight of absence takes d for, n_z; without it, what it is."""
 
     def passing(self, d: int) -> float:
         """Return P_G of a detection of d components."""
@@ -68,6 +70,7 @@ def absence_weight(count: IntArray, validation: Validation, d: int) -> Array:
         b = (2 pi / gamma)^(d/2) m (1 / C_d) (1 - P_D P_G) / P_D .
     """
     detected = validation.detection_probability
+    d = validation.dimension or d
     missed = (1.0 - detected * validation.passing(d)) / detected
     return np.asarray(
         count * ((2.0 * pi / validation.gate) ** (0.5 * d) * missed / validation.ball(d))

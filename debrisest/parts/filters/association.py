@@ -49,6 +49,8 @@ class _Validating(FilterPart):
     """Volume by which the clutter in the gate is spread, for the weight of "none of them is the
     target's": the unit ball's, or its inverse, a misprint of Li et al. that weighs 10 times as
     much."""
+    gate_dimension: Annotated[int, Field(ge=1)] | None = None
+    """Dimension of a detection in that weight; none: what it is, 2 of a pixel."""
     stacked: bool = False
     """All sensors update with one gain, instead of one after the other."""
     keep_s: KeptTimes = []
@@ -57,7 +59,13 @@ class _Validating(FilterPart):
     def validation(self) -> Validation:
         """What the numerics call these keys."""
         ball = unit_ball if self.gate_volume == "unit_ball" else inverse_unit_ball
-        return Validation(self.gate, self.detection_probability, self.gate_probability, ball)
+        return Validation(
+            self.gate,
+            self.detection_probability,
+            self.gate_probability,
+            ball,
+            self.gate_dimension,
+        )
 
 
 class AssociationFilter(_Validating):

@@ -23,6 +23,15 @@ class BiasedFeature(Keys):
     """How far it is off, in a direction of each run's own."""
 
 
+class SlowWindow(Keys):
+    """A span of time with fewer samples than the scenario has epochs."""
+
+    span_s: Limits[NonNegative]
+    """From when until before when."""
+    every_s: Positive
+    """Time between samples there, rounded to whole steps."""
+
+
 def _value_or_limits(given: object) -> str:
     return "limits" if isinstance(given, list) else "value"
 
@@ -53,6 +62,8 @@ class FeaturePoints(SimulationPart):
     """Share of the points that drop out, each by itself."""
     outages_s: list[Limits[NonNegative]] = []
     """From when until before when nothing is seen."""
+    slow_s: list[SlowWindow] = []
+    """Windows with a slower sampling, whose other epochs show nothing."""
     wrong_match_share: Annotated[float, Field(ge=0, lt=1)] = 0.0
     """Share of the points that are wrong: half of them are off by 1 to 5 m, half exchanged with the
     next feature."""
@@ -78,6 +89,7 @@ class FeaturePoints(SimulationPart):
             )
             measured[~seen] = np.nan
         measured[self._unseen(clock.times, draws)] = np.nan
+        measured[:, self._skipped(clock)] = np.nan
         if self.missing_share:
             missed = draws.uniform(Stream.CLUTTER, measured.shape[1:-1]) < self.missing_share
             measured[missed] = np.nan
@@ -110,12 +122,21 @@ class FeaturePoints(SimulationPart):
 
     def _unseen(self, times: Array, draws: Draws) -> BoolArray:
         """Epochs (run, time) without any point."""
-        spans = [(times >= begin) & (times < end) for begin, end in self.outages_s]
+        spans = [_within(times, span) for span in self.outages_s]
         result = np.tile(np.any([np.zeros(len(times), bool), *spans], axis=0), (len(draws.runs), 1))
         if self.seen_for_s is not None:
             low, high = self.seen_for_s
             result |= times >= low + (high - low) * draws.uniform(Stream.CLUTTER, (1,))
         return result
+
+    def _skipped(self, clock: Clock) -> BoolArray:
+        """Epochs (time,) between the samples of slow windows."""
+        skipped = np.zeros(len(clock.times), bool)
+        for window in self.slow_s:
+            inside = _within(clock.times, window.span_s)
+            every = max(1, round(window.every_s / clock.step))
+            skipped |= inside & ((np.cumsum(inside) - 1) % every != 0)
+        return skipped
 
     def _bias(self, data: Data, draws: Draws) -> Array:
         """Offset of the features (run, 1, feature, 3), in a direction of each run's own."""
@@ -133,3 +154,7 @@ class FeaturePoints(SimulationPart):
         if self.feature_error_m:
             result += self.feature_error_m * draws.normal(Stream.CLUTTER, result.shape[1:])
         return result
+
+
+def _within(times: Array, span: list[float]) -> BoolArray:
+    return np.asarray((times >= span[0]) & (times < span[1]))

@@ -9,7 +9,7 @@ from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream, drawn_about
 from debrisest.dynamics.inertia_ratios import slopes
-from debrisest.roles import Positive, SimulationPart
+from debrisest.roles import PerAxis, Positive, SimulationPart
 
 _TRIES = 1000
 """Draws of the inertia ratios, of which the first that is a body's counts."""
@@ -22,19 +22,19 @@ class DrawnPose(SimulationPart):
     needs = tuple(f"true_{name}" for name in _NAMES)
     knows = tuple(f"start_{name}" for name in _NAMES)
     kind: Literal["drawn_pose"]
-    position_sigma_m: Positive
-    """Standard deviation of the position, per axis."""
-    velocity_sigma_m_s: Positive
-    """Standard deviation of the velocity, per axis."""
-    rate_sigma_deg_s: Positive
-    """Standard deviation of the rate, per axis."""
+    position_sigma_m: PerAxis[Positive]
+    """Standard deviation of the position, leader's axes."""
+    velocity_sigma_m_s: PerAxis[Positive]
+    """Standard deviation of the velocity, leader's axes."""
+    rate_sigma_deg_s: PerAxis[Positive]
+    """Standard deviation of the rate, leader's axes."""
     q_sigma: Positive
     """Standard deviation of each component of `q_lt`, which is then normalised; an angle's is twice
     that."""
     inertia_ratio_sigma: Positive | None
     """Standard deviation of each inertia ratio; null: another start gives the ratios."""
-    point_sigma_m: Positive
-    """Standard deviation of the features, per axis."""
+    point_sigma_m: PerAxis[Positive]
+    """Standard deviation of the features, target's axes."""
     bodies_only: bool = False
     """Draw inertia ratios again until no moment exceeds the sum of the others."""
 
@@ -49,7 +49,7 @@ class DrawnPose(SimulationPart):
         sigmas = {
             "position": self.position_sigma_m,
             "velocity": self.velocity_sigma_m_s,
-            "rate_l": float(np.radians(self.rate_sigma_deg_s)),
+            "rate_l": np.radians(self.rate_sigma_deg_s),
             "q_lt": self.q_sigma,
             "inertia_ratio": self.inertia_ratio_sigma,
             "point_b": self.point_sigma_m,
@@ -60,7 +60,7 @@ class DrawnPose(SimulationPart):
                 continue
             constant = name in ("inertia_ratio", "point_b")
             true = data[f"true_{name}"] if constant else data[f"true_{name}"][:, 0]
-            result |= drawn_about(f"start_{name}", true, sigma, draws)
+            result |= drawn_about(f"start_{name}", true, np.asarray(sigma), draws)
         result["start_q_lt"] = quaternion.normalize(result["start_q_lt"])
         if self.bodies_only and self.inertia_ratio_sigma:
             true, sigma = data["true_inertia_ratio"], self.inertia_ratio_sigma

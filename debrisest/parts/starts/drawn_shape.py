@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
-from debrisest.roles import Positive, SimulationPart
+from debrisest.roles import PerAxis, Positive, SimulationPart
 from debrisest.target.start_frame import in_start_frame
 
 
@@ -30,15 +30,15 @@ class DrawnShape(SimulationPart):
         )
     )
     kind: Literal["drawn_shape"]
-    position_sigma_m: Positive = 2.0
+    position_sigma_m: PerAxis[Positive] = 2.0
     """Standard deviation of each component of the chaser's position, which then gets the length of
     the first range."""
-    velocity_sigma_m_s: Positive = 0.03
+    velocity_sigma_m_s: PerAxis[Positive] = 0.03
     """Standard deviation of each component of the chaser's velocity, which is guessed to be
     zero."""
     q_sigma: Positive = 1e-3
     """Standard deviation of each component of the attitude, which is exact by definition."""
-    rate_sigma_deg_s: Positive = 0.3
+    rate_sigma_deg_s: PerAxis[Positive] = 0.3
     """Standard deviation of each component of the rate."""
     inertia_sigma_kg_m2: Positive = 1.0
     """Standard deviation of each element of the inertia tensor."""
@@ -52,9 +52,10 @@ class DrawnShape(SimulationPart):
         """Return the first guess and its sigma."""
         truth, runs = in_start_frame(data, data["true_q_hc"][:, 0]), len(draws.runs)
         drawn = draws.normal(Stream.INITIAL_ERROR, (4, 3))
-        position = data["chaser_position_h"][:, 0] + self.position_sigma_m * drawn[:, 0]
+        position_sigma = np.asarray(self.position_sigma_m)
+        position = data["chaser_position_h"][:, 0] + position_sigma * drawn[:, 0]
         position *= (data["measured_range"][:, 0] / np.linalg.norm(position, axis=-1))[:, None]
-        rate_sigma = float(np.radians(self.rate_sigma_deg_s))
+        rate_sigma = np.radians(self.rate_sigma_deg_s)
         error = _symmetric(drawn[:, 2:].reshape(runs, 6))
         point_c, sigma = self._points(data, position)
         guess: Data = {
@@ -67,8 +68,8 @@ class DrawnShape(SimulationPart):
             "point_b": point_c - [0.0, 0.0, 1.0] * np.linalg.norm(position, axis=-1)[:, None, None],
         }
         sigmas: dict[str, float | Array] = {
-            "relative_position_h": self.position_sigma_m,
-            "relative_velocity_h": self.velocity_sigma_m_s,
+            "relative_position_h": position_sigma,
+            "relative_velocity_h": np.asarray(self.velocity_sigma_m_s),
             "q_cb": self.q_sigma,
             "rate_b": rate_sigma,
             "inertia_b": self.inertia_sigma_kg_m2,

@@ -5,7 +5,7 @@ from typing import Literal
 
 from debrisest.arrays import Data
 from debrisest.clock import Clock
-from debrisest.roles import StartPart
+from debrisest.roles import Positive, StartPart
 
 _PREFIX = "start_"
 
@@ -27,6 +27,20 @@ class FromGuess(StartPart):
 
 
 class Guess(FromGuess):
-    """The first guess as it stands."""
+    """The first guess as it stands, its sigma as it is told or as it is thought to be."""
 
     kind: Literal["guess"]
+    sigma_factors: dict[str, Positive] = {}
+    """What the estimator takes the sigma for over what it is, by quantity (such as `rate_b`)."""
+
+    def start(self, data: Data, clock: Clock) -> tuple[Data, Data]:
+        """Return the initial guess by name, and its variance by name."""
+        guess, variance = super().start(data, clock)
+        unknown = [name for name in self.sigma_factors if name not in guess]
+        if unknown:
+            raise ValueError(
+                f"sigma_factors: no first guess of {', '.join(unknown)}; there are "
+                f"{', '.join(guess)}"
+            )
+        scaled = {name: variance[name] * by**2 for name, by in self.sigma_factors.items()}
+        return guess, variance | scaled

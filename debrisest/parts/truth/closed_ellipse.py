@@ -12,12 +12,13 @@ from debrisest.dynamics import clohessy_wiltshire
 from debrisest.parts.truth.each_run import each_run
 from debrisest.roles import SimulationPart, Vector3
 
-_FRAME = "Hill frame (radially outward, along track, orbit normal), origin at the target"
+HILL = "Hill frame (radially outward, along track, orbit normal), origin at the target"
 _OPEN = 1e-3
 """Part of the velocity's size that may be missing or too much for a closed ellipse."""
 
 
-def _apart(position: list[float]) -> list[float]:
+def apart(position: list[float]) -> list[float]:
+    """Return the position if a camera there can look at the target; ValueError, in a sentence."""
     if position[0] == position[1] == 0:
         raise ValueError(
             "the chaser must not stand in the target, where the range is zero, nor straight above "
@@ -31,10 +32,10 @@ class ClosedEllipse(SimulationPart):
 
     needs = ("orbit_position", "orbit_velocity")
     truths = ("chaser_position_h", "chaser_velocity_h")
-    frames = {"chaser_position_h": _FRAME, "chaser_velocity_h": _FRAME}
+    frames = {"chaser_position_h": HILL, "chaser_velocity_h": HILL}
     tried = True
     kind: Literal["closed_ellipse"]
-    position_m: Annotated[Vector3, AfterValidator(_apart)]
+    position_m: Annotated[Vector3, AfterValidator(apart)]
     """Position at time zero, Hill frame; not on the frame's third axis."""
     velocity_m_s: Vector3
     """Velocity at time zero as seen in the rotating Hill frame."""
@@ -57,6 +58,7 @@ class ClosedEllipse(SimulationPart):
         if abs(along - needed) > _OPEN * size:
             raise ValueError(
                 f"the relative orbit is open: the along-track velocity is {along:.6g} m/s, a "
-                f"closed ellipse through this point needs {needed:.6g} m/s (-2 n x)"
+                f"closed ellipse through this point needs {needed:.6g} m/s (-2 n x); kind "
+                "relative_orbit may be open"
             )
         return mean_motion

@@ -24,6 +24,8 @@ class GravityGradient(SimulationPart):
     """Attitude at time zero."""
     rate_deg_s: Vector3
     """Rate at time zero, body axes."""
+    torque_n_m: Vector3 = [0.0, 0.0, 0.0]
+    """A further torque, constant in body axes; it wants an inertia in kg m2."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude and rate of the body axes, the same in every run of the same body."""
@@ -40,5 +42,6 @@ class GravityGradient(SimulationPart):
             np.radians(self.rate_deg_s),
             inertia,
             lambda time: propagate(*orbit, np.array([time]))[0][0],
+            np.array(self.torque_n_m),
         )
         return {"true_q_ib": q_ib, "true_rate_b": rate_b}

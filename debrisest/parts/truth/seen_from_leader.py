@@ -17,7 +17,7 @@ _FRAME = "leader's orbital frame (radially outward, along track, orbit normal), 
 
 
 class SeenFromLeader(SimulationPart):
-    """Two orbits and torque-free rotation in closed form; the scenario's orbit is the leader's.
+    """Two orbits and a rotation, in closed form if it is torque-free; the orbit is the leader's.
 
     Velocity and rate are relative to the leader's orbital frame and in its axes.
     """
@@ -34,6 +34,8 @@ class SeenFromLeader(SimulationPart):
     """Attitude at time zero, target's principal axes to leader's axes."""
     rate_deg_s: Vector3
     """Rate at time zero relative to the leader's axes, in these axes."""
+    torque_deg_s2: Vector3 = [0.0, 0.0, 0.0]
+    """A constant torque about the target's principal axes, over its moments of inertia."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return position, velocity, attitude and rate relative to the leader."""
@@ -49,6 +51,7 @@ class SeenFromLeader(SimulationPart):
             np.tile(np.radians(self.rate_deg_s), (runs, 1)),
             data["true_inertia_ratio"],
             leader,
+            np.radians(self.torque_deg_s2) if any(self.torque_deg_s2) else None,
         )
         return {
             **each_run({"true_position": position, "true_velocity": velocity}, draws),

@@ -72,6 +72,8 @@ class CameraRangeMinimal(ProblemPart):
     range_to: RangeModel = "centre"
     """What the range is taken to be: that to the centre of mass, to a surface nearer by a constant
     that is estimated, or to one of the points (`landmark_range`)."""
+    pixel_noise_px: Positive | None = None
+    """Standard deviation of each coordinate of a pixel; none: that of the sensor, with rounding."""
     range_noise_m: Positive | None = None
     """Standard deviation of the range; none: that of the sensor. A surface is not flat: take some
     0.15 m with `bias`."""
@@ -135,7 +137,7 @@ class CameraRangeMinimal(ProblemPart):
                 mean_motion=mean_motion_of(*start),
                 step=clock.step,
                 focal=float(data["focal_px"][0]),
-                pixel_sigma=float(data["pixel_noise"][0]),
+                pixel_sigma=self.pixel_noise_px or float(data["pixel_noise"][0]),
                 range_sigma=self.range_noise_m or float(data["range_noise"][0]),
                 attitude_sigma=white,
                 attitude=self.camera_attitude,

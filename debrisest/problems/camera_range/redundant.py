@@ -23,7 +23,8 @@ from debrisest.problems.camera_range.redundant_model import (
     redundant_model,
 )
 from debrisest.problems.camera_range.score import scores
-from debrisest.roles import ProblemPart, Window
+from debrisest.problems.process_noise import ProcessNoise
+from debrisest.roles import Positive, ProblemPart, Window
 
 _ROWS = np.array([*range(4, 13)])
 """Rate, position and velocity in the covariance."""
@@ -43,6 +44,12 @@ class CameraRangeRedundant(ProblemPart):
     )
     start_needs = _NAMES
     kind: Literal["camera_range_redundant"]
+    pixel_noise_px: Positive | None = None
+    """Standard deviation of each coordinate of a pixel; none: that of the sensor, with rounding."""
+    range_noise_m: Positive | None = None
+    """Standard deviation of the range; none: that of the sensor."""
+    process_noise: ProcessNoise = ProcessNoise()
+    """Standard deviations added per step."""
 
     def measurements(self, data: Data) -> Array:
         """Return pixels point by point, and the range (run, time, 2N + 1)."""
@@ -58,7 +65,15 @@ class CameraRangeRedundant(ProblemPart):
         known = CameraGeometry(
             points, mean_motion_of(*start), clock.step, float(data["focal_px"][0])
         )
-        return redundant_model(known, float(data["pixel_noise"][0]), float(data["range_noise"][0]))
+        variance = np.zeros(CORE + 6 * points)
+        variance[RATE] = self.process_noise.rate_rad_s**2
+        variance[VELOCITY] = self.process_noise.velocity_m_s**2
+        return redundant_model(
+            known,
+            self.pixel_noise_px or float(data["pixel_noise"][0]),
+            self.range_noise_m or float(data["range_noise"][0]),
+            variance,
+        )
 
     def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, n) and its diagonal covariance (run, n, n)."""

@@ -51,14 +51,22 @@ class CameraGeometry(NamedTuple):
         return slice(CORE + 3 * self.points, CORE + 6 * self.points)
 
 
-def redundant_model(known: CameraGeometry, pixel_noise: float, range_noise: float) -> Model:
-    """Return the model; process noise is zero, the motion is exact (Sec. 7.1 of the paper)."""
+def redundant_model(
+    known: CameraGeometry,
+    pixel_noise: float,
+    range_noise: float,
+    process_noise: Array | float = 0.0,
+) -> Model:
+    """Return the model, with noises of 1 sigma and variances ``(n,)`` per step.
+
+    These are zero in the paper, since the motion is exact (Sec. 7.1).
+    """
     size = CORE + 6 * known.points
     noise = np.append(np.full(2 * known.points, pixel_noise**2), range_noise**2)
     return Model(
         process=lambda state, _: process(known, state),
         measurement=lambda state, _: measurement(known, state),
-        process_noise=np.zeros((size, size)),
+        process_noise=process_noise * np.eye(size),
         measurement_noise=np.diag(noise),
         error_names=error_names(known.points),
         retract=_correct,

@@ -36,9 +36,10 @@ class ObserverGeometry(NamedTuple):
     """Inertial to camera axes, (time, run, observer, 3, 3)."""
     scale: Array
     """Focal length in pixels, (run,)."""
-    acceleration_noise: float
-    """1 sigma per axis, constant over a step, m/s^2."""
-    pixel_variance: float
+    acceleration_noise: Array
+    """1 sigma () or (3,), inertial axes, constant over a step, m/s^2."""
+    pixel_variance: Array
+    """Of each coordinate, () or (2,)."""
     with_bias: bool
 
     def of(self, runs: IntArray) -> "ObserverGeometry":

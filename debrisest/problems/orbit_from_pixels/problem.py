@@ -1,9 +1,9 @@
 """The orbit of a piece of debris from the pixels of several satellites' cameras."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
@@ -13,7 +13,18 @@ from debrisest.filters.estimates import Estimates
 from debrisest.filters.scan_model import ScanModel
 from debrisest.problems.orbit_from_pixels.model import ORBIT, ObserverGeometry, scan_model
 from debrisest.problems.orbit_from_pixels.score import scores, true_bias
-from debrisest.roles import NonNegative, Positive, ProblemPart, Window
+from debrisest.roles import NonNegative, PerAxis, Positive, ProblemPart, Window
+
+
+def _one_or_both(given: object) -> str:
+    return "both" if isinstance(given, list) else "one"
+
+
+_PerCoordinate = Annotated[
+    Annotated[Positive, Tag("one")]
+    | Annotated[list[Positive], Field(min_length=2, max_length=2), Tag("both")],
+    Discriminator(_one_or_both),
+]
 
 
 class OrbitFromPixels(ProblemPart):
@@ -24,11 +35,11 @@ class OrbitFromPixels(ProblemPart):
     start_needs = ("orbit_position", "orbit_velocity")
     true_state = ("orbit_position", "orbit_velocity")
     kind: Literal["orbit_from_pixels"]
-    acceleration_noise_m_s2: NonNegative
-    """Standard deviation per axis of an acceleration that lasts a step."""
-    pixel_variance_px2: Positive | None = None
-    """Variance of each coordinate of a point; left out, it is that of `detections`: the noise
-    squared, and 1/12 of rounding."""
+    acceleration_noise_m_s2: PerAxis[NonNegative]
+    """Standard deviation of an acceleration that lasts a step, inertial axes."""
+    pixel_variance_px2: _PerCoordinate | None = None
+    """Variance of both coordinates of a point, or of each; left out, it is that of `detections`:
+    the noise squared, and 1/12 of rounding."""
     updates_in_control: bool = False
     """Use what cameras show while they turn."""
     attitude_bias: bool = False
@@ -87,19 +98,19 @@ class OrbitFromPixels(ProblemPart):
                 observer=_time_first(data["observer_position"]),
                 to_camera=_time_first(to_camera),
                 scale=data["focal_px"],
-                acceleration_noise=self.acceleration_noise_m_s2,
+                acceleration_noise=np.asarray(self.acceleration_noise_m_s2),
                 pixel_variance=self._variance(data),
                 with_bias=self.attitude_bias,
             )
         )
 
-    def _variance(self, data: Data) -> float:
+    def _variance(self, data: Data) -> Array:
         if self.pixel_variance_px2 is not None:
-            return self.pixel_variance_px2
+            return np.asarray(self.pixel_variance_px2)
         noise = float(data["pixel_noise"][0])
         if not noise > 0.0:
             raise ValueError("points without noise weigh infinitely; give pixel_variance_px2")
-        return noise**2
+        return np.asarray(noise**2)
 
     def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return state (run, n) and covariance (run, n, n); with tracks (run, track, ...)."""

@@ -9,6 +9,7 @@ from debrisest.clock import Clock
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.model import Model
 from debrisest.filters.replay_model import ReplayModel
+from debrisest.problems.process_noise import ProcessNoise
 from debrisest.problems.stereo_pose.additive import additive_model
 from debrisest.problems.stereo_pose.chart import ATTITUDE_ERROR
 from debrisest.problems.stereo_pose.data import (
@@ -22,10 +23,10 @@ from debrisest.problems.stereo_pose.data import (
     shown_of,
     state_of,
 )
-from debrisest.problems.stereo_pose.model import RATE, VELOCITY, K, Q
+from debrisest.problems.stereo_pose.model import RATE, VELOCITY, K, Q, StereoGeometry
 from debrisest.problems.stereo_pose.replay import replay_model
 from debrisest.problems.stereo_pose.score import scores
-from debrisest.roles import Keys, NonNegative, ProblemPart, Window
+from debrisest.roles import NonNegative, Positive, ProblemPart, Window
 
 
 class _StereoPose(ProblemPart):
@@ -38,6 +39,14 @@ class _StereoPose(ProblemPart):
     true_state = tuple(f"true_{name}" for name in NAMES)
     measures: list[Measure] | None = None
     """What is used; none: all that is measured."""
+    pixel_noise_px: Positive | None = None
+    """Standard deviation of each coordinate; none: that of the cameras."""
+    flow_noise_px_s: Positive | None = None
+    """Standard deviation of the flow; none: that of the cameras."""
+    disparity_noise_px: Positive | None = None
+    """Standard deviation of the disparity; none: that of the cameras."""
+    acceleration_noise_rad_s2: Positive | None = None
+    """Standard deviation of the angular acceleration; none: that of its sensor."""
     score_delay_s: NonNegative = 0.0
     """Errors are taken against the truth so much later, rounded to whole steps."""
 
@@ -51,6 +60,17 @@ class _StereoPose(ProblemPart):
         """Return the chosen measurements (run, time, m)."""
         return measured_of(data, shown_of(data, self.measures))
 
+    def noise(self, data: Data, known: StereoGeometry) -> Array:
+        """Return the noise of the measurements (m,) that the estimator reckons with, 1 sigma."""
+        thought = {
+            "pixel_noise": self.pixel_noise_px,
+            "flow_noise": self.flow_noise_px_s,
+            "disparity_noise": self.disparity_noise_px,
+            "angular_acceleration_noise": self.acceleration_noise_rad_s2,
+        }
+        told = {name: np.array([sigma]) for name, sigma in thought.items() if sigma is not None}
+        return noise_of(data | told, known)
+
     def assess(self, data: Data, scored: Window) -> Data:
         """Return errors against the truth, or the truth a delay later, and consistency."""
         late = Clock(data["time_s"] - data["time_s"][0]).nearest(self.score_delay_s)
@@ -59,15 +79,6 @@ class _StereoPose(ProblemPart):
     def truth(self, data: Data) -> Array | None:
         """Return the true states (run, time, n)."""
         return state_of(data, "true_")
-
-
-class ProcessNoise(Keys):
-    """What a filter adds per step, 1 sigma per axis."""
-
-    velocity_m_s: NonNegative = 0.0
-    """Standard deviation of each component of the velocity."""
-    rate_rad_s: NonNegative = 0.0
-    """Standard deviation of each component of the rate."""
 
 
 class StereoPoseAdditive(_StereoPose):
@@ -88,7 +99,7 @@ class StereoPoseAdditive(_StereoPose):
         variance = np.zeros(15 + 3 * known.points)
         variance[VELOCITY] = self.process_noise.velocity_m_s**2
         variance[RATE] = self.process_noise.rate_rad_s**2
-        noise = np.diag(noise_of(data, known) ** 2)
+        noise = np.diag(self.noise(data, known) ** 2)
         return additive_model(known, np.diag(variance), noise, self.transition == "exact")
 
     def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
@@ -111,7 +122,7 @@ class StereoPose(_StereoPose):
         known = geometry_of(data, clock, self.measures)
         variance = {name: data[f"start_{name}_sigma"][:1] ** 2 for name in NAMES}
         prior = np.sqrt(_plain(state_of(variance))[0])
-        return replay_model(known, noise_of(data, known), prior)
+        return replay_model(known, self.noise(data, known), prior)
 
     def pack(self, guess: Data, variance: Data) -> tuple[Array, Array]:
         """Return the initial state (run, n) and the covariance (run, n_e, n_e) of its errors."""

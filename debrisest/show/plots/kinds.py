@@ -24,6 +24,7 @@ from debrisest.show.plots import (
     raw_quaternion,
     recovered_quaternion,
     relative_trajectory,
+    scene,
     shape,
     sign_hypotheses,
     target,
@@ -107,5 +108,6 @@ FIGURES: dict[str, Kind] = {
         estimators_over_time.QUANTITIES,
         of_estimators=True,
     ),
+    "scene": Kind(scene.scene, scene.DATASETS, of_simulation=True),
     "target": Kind(target.target, target.DATASETS, of_simulation=True),
 }

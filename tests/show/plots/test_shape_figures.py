@@ -7,6 +7,7 @@ from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.show.plots.pose_errors import pose_errors
 from debrisest.show.plots.relative_trajectory import relative_trajectory
+from debrisest.show.plots.scene import in_first_image, scene
 from debrisest.show.plots.shape import shape
 
 TIMES = 5.0 * np.arange(60)
@@ -95,3 +96,30 @@ def test_a_tensors_errors_are_shown_element_by_element_with_their_bands() -> Non
         "Iyz",
     ]
     assert all(axis.collections for axis in panels)
+
+
+def test_the_scene_has_every_point_where_its_first_pixel_is() -> None:
+    """A camera 20 m behind, which looks along track, x to the right of a target that is turned."""
+    rng = np.random.default_rng(4)
+    points = rng.uniform(-1.0, 1.0, (5, 3))
+    half = np.sqrt(0.5)
+    data = {
+        "true_point_b": points,
+        "true_q_ib": np.tile([half, 0.0, 0.0, half], (2, 1)),
+        "orbit_position": np.tile([7e6, 0.0, 0.0], (2, 1)),
+        "orbit_velocity": np.tile([0.0, 7.5e3, 0.0], (2, 1)),
+        "chaser_position_h": np.tile([0.0, -20.0, 0.0], (2, 1)),
+        # The camera's z is along track, its x radial, its y against the orbit normal.
+        "true_q_hc": np.tile([half, -half, 0.0, 0.0], (2, 1)),
+        "measured_pixel": np.zeros((2, 1, 5, 2)),
+    }
+    # The body is turned by 90 deg about the normal: its x is along track, its y against the radius.
+    expected = np.stack([-points[:, 1], -points[:, 2], points[:, 0]], axis=-1)
+    assert np.allclose(in_first_image(data, points), expected)
+    data["measured_pixel"][0, 0, 3] = np.nan
+    figure = scene(data, "run 0")
+    figure.draw_without_rendering()
+    drawn = [line for line in figure.axes[1].get_lines() if line.get_marker() == "o"]
+    assert np.allclose([np.ravel(line.get_data_3d()) for line in drawn], expected)
+    filled = [line.get_markerfacecolor() != "white" for line in drawn]
+    assert filled == [True, True, True, False, True]

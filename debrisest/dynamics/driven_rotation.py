@@ -1,0 +1,39 @@
+"""Rotation of a rigid body under a torque that depends on time and attitude."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from debrisest.arrays import Array
+from debrisest.attitude import quaternion
+from debrisest.attitude.vectors import matrix_of_cross
+
+Torque = Callable[[float, Array], Array]
+"""Torque ``(3,)`` in body axes, N m, at a time, s, and a unit quaternion ``q_ib (4,)``."""
+
+
+def driven(
+    times: Array, q0: Array, rate0: Array, inertia: Array, torque: Torque
+) -> tuple[Array, Array]:
+    """Attitude ``q_ib (time, 4)`` and rate ``(time, 3)``, rad/s, of one body.
+
+    ``times (time,)``, s, ascend from the epoch of ``q0 (4,)`` and ``rate0 (3,)``, which is zero;
+    ``inertia (3, 3)`` in kg m^2, about the centre of mass. Integrated by a Runge-Kutta method of
+    order 8, relative tolerance 1e-11.
+    """
+    from scipy.integrate import solve_ivp
+
+    inverse = np.linalg.inv(inertia)
+
+    def derivative(time: float, state: Array) -> Array:
+        q, rate = state[:4], state[4:]
+        acting = torque(time, quaternion.normalize(q))
+        spin = 0.5 * quaternion.multiply(q, np.concatenate([[0.0], rate]))
+        return np.concatenate([spin, inverse @ (acting - matrix_of_cross(rate) @ inertia @ rate)])
+
+    span = (0.0, max(float(times[-1]), 1.0))
+    start = np.concatenate([q0, rate0])
+    solution = solve_ivp(
+        derivative, span, start, method="DOP853", t_eval=times, rtol=1e-11, atol=1e-13
+    )
+    return quaternion.normalize(solution.y[:4].T), solution.y[4:].T
