@@ -1,6 +1,6 @@
 """What all figures look like: sizes, colours, lines and letters."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from typing import Any, ParamSpec
@@ -21,6 +21,8 @@ WIDTH = 7.2
 """Width of every figure, inches."""
 TRUTH: dict[str, Any] = {"color": INK, "linewidth": 0.7, "dashes": (4, 3), "zorder": 4}
 """A truth is thin and dashed, over everything else."""
+_BOUND: dict[str, Any] = {"color": INK, "linewidth": 1.2, "zorder": 5}
+_DASHES = ((4, 2), (1, 1), (6, 1, 1, 1))
 
 _SETTINGS: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
@@ -62,6 +64,14 @@ _SETTINGS: dict[Any, Any] = {
 }
 
 P = ParamSpec("P")
+
+
+def estimator_looks(estimators: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Return a line's look for each estimator: colours, and dashes for those that are bounds."""
+    colours = iter(ESTIMATOR_COLOURS * len(estimators))
+    lines = {name: {"color": next(colours), "linewidth": 1.2} for name in estimators}
+    bounds = (name for name in lines if name.endswith("bound"))
+    return lines | {name: _BOUND | {"dashes": d} for name, d in zip(bounds, _DASHES)}
 
 
 @contextmanager
