@@ -55,8 +55,8 @@ def lay_out(figure: Figure) -> None:
 def _fix_labels(figure: Figure) -> None:
     """Leave the labels of axes as far from them as their ticks, or aligned ones, ask for.
 
-    Matplotlib would search all ticks for it whenever it lays out or draws, those of aligned axes for
-    each of them, and for labels without a text as well.
+    Matplotlib would search all ticks for it whenever it lays out or draws, those of aligned axes
+    for each of them, and for labels without a text as well.
     """
     for axes in figure.axes:
         if axes.name == "rectilinear":

@@ -14,11 +14,12 @@ if TYPE_CHECKING:
 
 def page(chapters: Sequence[Chapter]) -> str:
     """Return the report; raise UserError where jinja2 is not installed."""
-    template = _environment().get_template("page.html")
+    template = environment().get_template("page.html")
     return template.render(chapters=chapters, colours=ESTIMATOR_COLOURS, verdicts=list(Verdict))
 
 
-def _environment() -> "Environment":
+def environment() -> "Environment":
+    """Return what fills templates; raise UserError where jinja2 is not installed."""
     try:
         from jinja2 import Environment, PackageLoader, StrictUndefined
     except ImportError:

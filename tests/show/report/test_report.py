@@ -170,3 +170,17 @@ def test_consistency_is_shown_as_it_is_and_what_cannot_be_compared_is_not() -> N
     assert (shown[0].title, shown[0].reference) == ("nees, rmse, end", "1")
     assert all("rate" not in panel.title for panel in shown)
     assert "2 x 1" in shown[0].marks[0].words
+
+
+def test_a_sweep_can_end_with_the_path_of_its_report(
+    small: Path, tmp_path: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    some = ("--case", "slow", "--estimator", "wahba", "--runs", 1, "--report")
+    done = sweep(small, tmp_path / "out", *some)
+    path = tmp_path / "out" / "small" / "report.html"
+    assert done.stdout.splitlines()[-1] == f"report: {path}"
+    assert "data:image/png" in path.read_text(encoding="utf-8")
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    done = sweep(small, tmp_path / "other", *some)
+    assert (done.exit_code, (tmp_path / "other").exists()) == (2, False)
+    assert "pip install 'debrisest[report]'" in done.stderr
