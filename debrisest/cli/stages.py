@@ -39,6 +39,10 @@ if TYPE_CHECKING:
     from debrisest.scenario.load import LoadedScenario
 
 
+_MOST_FAILURES = 20
+"""Lines on failures, beyond which only their number is told."""
+
+
 def _command(last_stage: str, help: str) -> Callable[..., None]:
     """Return the command that brings one stage, and what it needs before it, up to date."""
 
@@ -157,6 +161,9 @@ def bring(
         print(f"{len(due)} of {len(steps)} steps would run")
         return False
     failures = bring_up_to_date(scenarios, out, selection, machine)
-    for name, why in failures.items():
+    for name, why in [*failures.items()][:_MOST_FAILURES]:
         print(printable(f"{name} failed: {why}"), file=sys.stderr)
+    if len(failures) > _MOST_FAILURES:
+        more = len(failures) - _MOST_FAILURES
+        print(f"and {more} more failed; debrisest status tells all", file=sys.stderr)
     return bool(failures)
