@@ -296,3 +296,16 @@ def test_nothing_is_simulated_over_measurements(
     before = {path: path.read_bytes() for path in measured.rglob("simulate*")}
     sweep(small, measured, "--case", "slow")
     assert {path: path.read_bytes() for path in measured.rglob("simulate*")} == before
+
+
+def test_of_very_many_failures_the_first_are_told(
+    small: Path, tmp_path: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    failures = {f"small slow: simulate, run {run}": "no room" for run in range(300)}
+    monkeypatch.setattr(
+        "debrisest.runner.sweep.bring_up_to_date", lambda *_: {**failures}, raising=True
+    )
+    done = sweep(small, tmp_path / "out", *ONE)
+    told = [line for line in done.stderr.splitlines() if "simulate, run" in line]
+    assert (done.exit_code, len(told)) == (1, 20)
+    assert "and 280 more failed; debrisest status tells all" in done.stderr

@@ -18,11 +18,11 @@ _TAIL = (1 - CONFIDENCE) / 2
 _LARGEST_TAIL = 0.035
 """An extreme of the sample is an end if it misses the quantile less often than this."""
 _POWER, _POWER_OF_RMS = -1 / 3, -1.0
-_PERCENTILES = {"median": 0.5, "p50": 0.5, "p70": 0.7, "p90": 0.9, "p100": 1.0}
+PERCENTILES = {"median": 0.5, "p50": 0.5, "p70": 0.7, "p90": 0.9, "p100": 1.0}
 _SHARES = ("share", "ever")
 
 
-class _Spread(NamedTuple):
+class Spread(NamedTuple):
     """A mean with its standard error and the degrees of freedom of that."""
 
     mean: float
@@ -45,14 +45,14 @@ def with_interval(name: str, groups: list[Array]) -> tuple[float, float, float]:
 def _ends(name: str, groups: list[Array], measured: float) -> tuple[float, float]:
     if not all(np.isfinite(group).all() for group in groups):
         return np.nan, np.nan
-    if name in _PERCENTILES:
-        return _joined(lambda group: _of_quantile(group, _PERCENTILES[name]), name, groups)
+    if name in PERCENTILES:
+        return _joined(lambda group: _of_quantile(group, PERCENTILES[name]), name, groups)
     if name in _SHARES and all(np.isin(group, (0.0, 1.0)).all() for group in groups):
         return _joined(_of_proportion, name, groups)
-    mean, reach = _reach(_averaged([_spread(name, group) for group in groups]))
+    mean, half = reach(averaged([spread(name, group) for group in groups]))
     if any(np.min(group) <= 0 for group in groups):
-        return mean - reach, mean + reach
-    return _skewed(reach / mean, mean, _POWER_OF_RMS if name == "rms" else _POWER)
+        return mean - half, mean + half
+    return _skewed(half / mean, mean, _POWER_OF_RMS if name == "rms" else _POWER)
 
 
 def _joined(
@@ -105,35 +105,35 @@ def _of_proportion(figures: Array) -> tuple[float, float]:
     return max(float(centre - half), 0.0), min(float(centre + half), 1.0)
 
 
-def _spread(name: str, figures: Array) -> _Spread:
+def spread(name: str, figures: Array) -> Spread:
     """Return the mean over runs, or its root mean square, with its standard error."""
     n = len(figures)
     if n < 2:
-        return _Spread(float(np.mean(figures)), np.nan, np.nan)
+        return Spread(float(np.mean(figures)), np.nan, np.nan)
     if name != "rms":
-        return _Spread(float(np.mean(figures)), float(np.std(figures, ddof=1) / np.sqrt(n)), n - 1)
+        return Spread(float(np.mean(figures)), float(np.std(figures, ddof=1) / np.sqrt(n)), n - 1)
     largest = float(np.max(np.abs(figures)))
     square = (figures / largest) ** 2 if largest > 0 else figures
     root = float(np.sqrt(np.mean(square)))
     error = np.std(square, ddof=1) / np.sqrt(n) / (2 * root) if root > 0 else 0.0
-    return _Spread(largest * root, float(largest * error), n - 1)
+    return Spread(largest * root, float(largest * error), n - 1)
 
 
-def _averaged(parts: list[_Spread]) -> _Spread:
+def averaged(parts: list[Spread]) -> Spread:
     """Return the mean of independent groups, with Satterthwaite's degrees of freedom."""
     mean, error, dof = np.transpose(parts)
     total = float(np.sum(error**2))
     if not total > 0:
-        return _Spread(float(np.mean(mean)), total, float(np.sum(dof)))
+        return Spread(float(np.mean(mean)), total, float(np.sum(dof)))
     together = total**2 / float(np.sum(error**4 / dof))
-    return _Spread(float(np.mean(mean)), float(np.sqrt(total) / len(parts)), together)
+    return Spread(float(np.mean(mean)), float(np.sqrt(total) / len(parts)), together)
 
 
-def _reach(spread: _Spread) -> tuple[float, float]:
+def reach(found: Spread) -> tuple[float, float]:
     """Return the mean and the half length of Student's interval."""
     from scipy.special import stdtrit
 
-    return spread.mean, spread.error * float(stdtrit(spread.dof, 1 - _TAIL))
+    return found.mean, found.error * float(stdtrit(found.dof, 1 - _TAIL))
 
 
 def _skewed(reach: float, mean: float, power: float) -> tuple[float, float]:

@@ -52,6 +52,9 @@ Cluster = Annotated[
 ]
 Quiet = Annotated[bool, Option("--quiet", help="No progress.")]
 Check = Annotated[bool, Option("--check", help="Exit 1 on unexpected verdicts.")]
+Report = Annotated[
+    bool, Option("--report", help="End with a report of HTML, as the command report makes it.")
+]
 Unprinted = Annotated[bool, Option("--quiet", help="Write files, print nothing about them.")]
 Form = Annotated[Format, Option("--format", help="How to print.")]
 RESULTS = Path("results")

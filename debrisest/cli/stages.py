@@ -24,17 +24,23 @@ from debrisest.cli.options import (
     Out,
     Plugins,
     Quiet,
+    Report,
     RerunFailed,
     Runs,
     Settings,
     Variant,
 )
+from debrisest.cli.report import write_report
 from debrisest.cli.show import show_tables
 
 if TYPE_CHECKING:
     from debrisest.runner.plan import Selection
     from debrisest.runner.sweep import Machine
     from debrisest.scenario.load import LoadedScenario
+
+
+_MOST_FAILURES = 20
+"""Lines on failures, beyond which only their number is told."""
 
 
 def _command(last_stage: str, help: str) -> Callable[..., None]:
@@ -88,15 +94,22 @@ def sweep(
     cluster: Cluster = None,
     quiet: Quiet = False,
     check: Check = False,
+    report: Report = False,
 ) -> None:
     """Do everything for all cases, then write and print the tables."""
+    if report:
+        from debrisest.show.report.page import environment
+
+        environment()
     scenarios = computable(load_all(configs, _with_keep(settings, keep), plugins, variant))
     selection = select(scenarios, runs, case, estimator, force=force)
     selection = _with_lost(selection, scenarios, out) if rerun_failed else selection
     failed = bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
     if not dry_run:
         wrong = show_tables(scenarios, out, selection, Format.RICH, check)
-        if sys.stderr.isatty() and not quiet:
+        if report:
+            print(f"report: {write_report(scenarios, out, selection, settings or ())}")
+        elif sys.stderr.isatty() and not quiet:
             of_runs = ["--runs", str(runs)] if runs else []
             changed = [text for setting in settings or () for text in ("--set", setting)]
             changed += ["--variant", variant] if variant else []
@@ -148,6 +161,9 @@ def bring(
         print(f"{len(due)} of {len(steps)} steps would run")
         return False
     failures = bring_up_to_date(scenarios, out, selection, machine)
-    for name, why in failures.items():
+    for name, why in [*failures.items()][:_MOST_FAILURES]:
         print(printable(f"{name} failed: {why}"), file=sys.stderr)
+    if len(failures) > _MOST_FAILURES:
+        more = len(failures) - _MOST_FAILURES
+        print(f"and {more} more failed; debrisest status tells all", file=sys.stderr)
     return bool(failures)

@@ -22,23 +22,30 @@ class Outcome(NamedTuple):
     error: str = ""
 
 
+def trusted(step: Step) -> str:
+    """Return that nothing lacks of a step that a worker reports to be done."""
+    return ""
+
+
 def execute(
     steps: Sequence[Step],
     pool: Executor,
     width: int,
-    lacking: Callable[[Step], str] = lambda _: "",
+    lacking: Callable[[Step], str] = trusted,
+    starting: Callable[[Sequence[Step]], None] = lambda _: None,
 ) -> Iterator[Outcome]:
     """Run the steps that have a reason to, each after its upstream, at most ``width`` at a time.
 
     Chunks of the same stage that are ready are computed together, as many as suit its parts. A step
     that cannot write its file, by itself either, takes the steps that need it along; a worker that
     dies ends the whole execution, with an outcome for what was running. ``lacking`` says why a step
-    that a worker reports to be done is not.
+    that a worker reports to be done is not; ``starting`` is told which steps begin.
     """
     schedule = Schedule((step for step in steps if step.reason), width)
     running: dict[Future[None], list[Step]] = {}
     while True:
         while len(running) < width and (batch := schedule.take()):
+            starting(batch)
             running[_submit(pool, batch)] = batch
         if not running:
             return

@@ -10,9 +10,11 @@ from debrisest.files import remove_leftovers
 from debrisest.interrupts import raised
 from debrisest.locked import locked
 from debrisest.results.address import STAGES
+from debrisest.results.chunk import Chunk
 from debrisest.results.open import find_results
-from debrisest.runner.execute import execute
+from debrisest.runner.execute import execute, trusted
 from debrisest.runner.executors import executor, require_guarded
+from debrisest.runner.pace import Pace
 from debrisest.runner.plan import Selection, Step, plan
 from debrisest.runner.progress import Progress, progress
 from debrisest.runner.read_back import not_read_back
@@ -43,7 +45,8 @@ def bring_up_to_date(
             locks.enter_context(locked(out / scenario.name))
             remove_leftovers(out / scenario.name)
         steps = [step for one in scenarios for step in plan(one, out, selection, STAGES)]
-        errors = _run_due(steps, machine)
+        known = [chunk for one in scenarios for chunk in find_results(out / one.name).chunks]
+        errors = _run_due(steps, machine, known)
     for scenario in scenarios:
         results = find_results(out / scenario.name)
         written = {step.address: step.runs for step in steps if step.name not in errors}
@@ -52,25 +55,27 @@ def bring_up_to_date(
     return errors
 
 
-def _run_due(steps: list[Step], machine: Machine) -> dict[str, str]:
+def _run_due(steps: list[Step], machine: Machine, known: Sequence[Chunk]) -> dict[str, str]:
     """Run what is due, if anything is; return the steps that wrote no file, with reasons."""
     due = [step for step in steps if step.reason]
-    with raised() as check, progress(len(due), machine.quiet) as told:
+    pace = Pace(due, known)
+    with raised() as check, progress(len(due), machine.quiet, pace.left) as told:
         for step in due:
             if step.notice:
                 told.say(step.notice)
-        return _run(steps, machine, told, check) if due else {}
+        return _run(steps, machine, pace, told, check) if due else {}
 
 
 def _run(
-    steps: list[Step], machine: Machine, told: Progress, check: Callable[[], None]
+    steps: list[Step], machine: Machine, pace: Pace, told: Progress, check: Callable[[], None]
 ) -> dict[str, str]:
     """Run what is due; return the steps that wrote no file, with reasons."""
     errors: dict[str, str] = {}
+    lacking = not_read_back if machine.cluster else trusted
     with executor(machine.jobs, machine.cluster) as (pool, width):
-        lacking = (not_read_back,) if machine.cluster else ()
-        for outcome in execute(steps, pool, width, *lacking):
+        for outcome in execute(steps, pool, width, lacking, told.started):
             check()
+            pace.done(outcome.step)
             told.done(outcome.step.name)
             if outcome.error:
                 errors[outcome.step.name] = outcome.error

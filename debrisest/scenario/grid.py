@@ -22,6 +22,8 @@ class Point(NamedTuple):
     """The name without what no simulation reads: points that share it share their simulation."""
     laid: Document
     """What is laid on the scenario."""
+    values: dict[str, Any]
+    """The value of each key, a part or a list in words."""
 
 
 def points(document: Document, grid: Grid) -> list[Point]:
@@ -40,7 +42,8 @@ def _point(
         laid = merge(laid, nested(tuple(key.split(".")), grid[key][index], place))
     told = {key: labels[key][index] for key, index in chosen.items()}
     truth = (text for key, text in told.items() if key.split(".")[0] not in NOT_SIMULATED)
-    return Point(",".join(told.values()), ",".join(truth), laid)
+    values = {key: _told(grid[key][index], index, grid[key]) for key, index in chosen.items()}
+    return Point(",".join(told.values()), ",".join(truth), laid, values)
 
 
 def _labels(grid: Grid) -> dict[str, list[str]]:
@@ -61,6 +64,10 @@ def _short(key: str, keys: Iterable[str]) -> str:
     alike = [path for path in paths if path[-1] == last]
     own = [part for part in reversed(above) if not any(part in path for path in alike)]
     return ".".join([*own[: bool(alike)], last]) if own or not alike else key
+
+
+def _told(value: Any, index: int, values: Sequence[Any]) -> Any:
+    return _text(value, index, values) if isinstance(value, dict | list) else value
 
 
 def _text(value: Any, index: int, values: Sequence[Any]) -> str:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import reduce
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from debrisest.catalog import required_keys
 from debrisest.errors import UserError, allowed_names, meant
@@ -42,6 +42,8 @@ class LoadedScenario(NamedTuple):
     path: Path
     cases: dict[str, Case]
     variant: str = ""
+    grid: dict[str, dict[str, Any]] = {}
+    """What a grid gives each case: values by their keys."""
 
     @property
     def name(self) -> str:
@@ -89,7 +91,7 @@ def load_scenario(
     cases: dict[str, Case] = {}
     layers_of = _layers_of_cases(document, listed or CasesAndGrid())
     problems += _placed(document, _case_name_problems(layers_of, listed or CasesAndGrid()))
-    for name, (simulated_as, layers) in layers_of.items():
+    for name, (simulated_as, layers, _) in layers_of.items():
         complete, wrong = told_by_data(reduce(_laid_on, [*layers, *laid_on]), path.parent)
         scenario, found = validated(complete, scenario_model(), path.parent)
         problems += wrong + found
@@ -102,7 +104,8 @@ def load_scenario(
         problems = _placed(document, file_problems(cases))
     if problems:
         raise UserError(dict.fromkeys(map(str, problems)))
-    return LoadedScenario(path, cases)
+    grid = {name: layers.values for name, layers in layers_of.items() if layers.values}
+    return LoadedScenario(path, cases, grid=grid)
 
 
 def _laid_on(base: Document, over: Document) -> Document:
@@ -164,6 +167,7 @@ class _Layers(NamedTuple):
 
     simulated_as: str
     documents: list[Document]
+    values: dict[str, Any] = {}
 
 
 def _layers_of_cases(document: Document, listed: CasesAndGrid) -> dict[str, _Layers]:
@@ -184,7 +188,7 @@ def _layers_of_cases(document: Document, listed: CasesAndGrid) -> dict[str, _Lay
         for point in grid:
             truth = ",".join([*prefix, *filter(None, [point.simulated_as])]) or case
             name = ",".join([*prefix, point.name])
-            found[name] = _Layers(truth, [*shared, *documents, point.laid])
+            found[name] = _Layers(truth, [*shared, *documents, point.laid], point.values)
     return found
 
 

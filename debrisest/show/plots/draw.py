@@ -11,6 +11,7 @@ from debrisest.results.assessed import Assessed, assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
+from debrisest.show.plots.along import along_curves
 from debrisest.show.plots.beside import beside
 from debrisest.show.plots.files import USUAL, write
 from debrisest.show.plots.gather import (
@@ -117,6 +118,8 @@ def sources(
     for name, kind in chosen.items():
         if kind.of_all_runs:
             yield from ((name, source) for source in _of_all_runs(scenario, errors, kind))
+        if kind.of_tables:
+            yield from ((name, source) for source in along_curves(scenario, errors))
         if kind.of_estimators:
             yield from ((name, source) for source in of_estimators(scenario, errors, kind.needs))
 

@@ -1,6 +1,5 @@
 """Errors of all estimators of a case over time, with the bound."""
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -10,12 +9,10 @@ from matplotlib.lines import Line2D
 
 from debrisest.arrays import Array, Data
 from debrisest.show.plots.axes import heading, log_axis, time_axis, unit
-from debrisest.show.plots.style import ESTIMATOR_COLOURS, INK, WIDTH, styled
+from debrisest.show.plots.style import WIDTH, estimator_looks, styled
 from debrisest.vocabulary import table_scale
 
 QUANTITIES = ("rate", "pitch", "attitude", "position", "velocity", "points")
-_BOUND: dict[str, Any] = {"color": INK, "linewidth": 1.2, "zorder": 5}
-_DASHES = ((4, 2), (1, 1), (6, 1, 1, 1))
 _BAND = (10.0, 90.0)
 """Percentiles over the runs between which a band is drawn."""
 _COLUMNS = 5
@@ -33,7 +30,7 @@ def estimators_over_time(data: Data, context: str) -> Figure:
     estimators = list(dict.fromkeys(name for _, name in found))
     figure = Figure(figsize=(WIDTH, 1.6 + 2.2 * len(quantities)))
     axes = list(figure.subplots(len(quantities), sharex=True, squeeze=False)[:, 0])
-    looks = _looks(estimators)
+    looks = estimator_looks(estimators)
     for axis, quantity in zip(axes, quantities):
         log_axis(axis)
         axis.set_ylabel(f"{quantity} [{unit(quantity)}]")
@@ -47,16 +44,6 @@ def estimators_over_time(data: Data, context: str) -> Figure:
     handles = [Line2D([], [], label=name, **look) for name, look in looks.items()]
     figure.legend(handles=handles, loc="outside lower center", ncols=min(_COLUMNS, len(handles)))
     return figure
-
-
-def _looks(estimators: list[str]) -> dict[str, dict[str, Any]]:
-    colours = iter(ESTIMATOR_COLOURS * len(estimators))
-    lines = {name: {"color": next(colours), "linewidth": 1.2} for name in estimators}
-    return lines | {name: _BOUND | {"dashes": d} for name, d in zip(_bounds(lines), _DASHES)}
-
-
-def _bounds(names: Iterable[str]) -> list[str]:
-    return [name for name in names if name.endswith("bound")]
 
 
 def _lines(axis: Axes, times: Array, error: Array, look: dict[str, Any]) -> None:

@@ -7,13 +7,15 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.transforms import offset_copy
 
 from debrisest.files import replacing
 from debrisest.show.plots.style import style
 
 FORMATS: dict[str, dict[str, Any]] = {
-    "png": {"dpi": 150, "metadata": {"Software": None}},
+    "png": {"dpi": 150, "metadata": {"Software": None}, "pil_kwargs": {"compress_level": 4}},
     "svg": {"dpi": 200, "metadata": {"Date": None}},
     "pdf": {"dpi": 300, "metadata": {"CreationDate": None}},
 }
@@ -44,9 +46,32 @@ def lay_out(figure: Figure) -> None:
     engine = figure.get_layout_engine()
     if engine is not None:
         with style():
+            _fix_labels(figure)
             engine.execute(figure)
         with mpl.rc_context(_LAID_OUT):
             figure.set_layout_engine(None)
+
+
+def _fix_labels(figure: Figure) -> None:
+    """Leave the labels of axes as far from them as their ticks, or aligned ones, ask for.
+
+    Matplotlib would search all ticks for it whenever it lays out or draws, those of aligned axes
+    for each of them, and for labels without a text as well.
+    """
+    for axes in figure.axes:
+        if axes.name == "rectilinear":
+            down, left = _pixels_away(axes.xaxis, 1), _pixels_away(axes.yaxis, 0)
+            below = offset_copy(axes.transAxes, figure, 0.0, down / figure.dpi)
+            beside = offset_copy(axes.transAxes, figure, left / figure.dpi, 0.0)
+            axes.xaxis.set_label_coords(0.5, 0.0, below)
+            axes.yaxis.set_label_coords(0.0, 0.5, beside)
+
+
+def _pixels_away(axis: Axis, along: int) -> float:
+    """Return how far a label lies from where its axes begin."""
+    if not axis.get_label_text() or axis.get_tightbbox() is None:
+        return 0.0
+    return float(axis.label.get_position()[along] - axis.axes.bbox.p0[along])
 
 
 def save(figure: Figure, target: Path | BytesIO, form: str, **options: Any) -> None:

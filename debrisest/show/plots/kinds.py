@@ -13,6 +13,7 @@ from debrisest.show.plots import (
     body,
     covariance_trace,
     error_over_time,
+    error_over_value,
     estimators_over_time,
     histograms,
     motion,
@@ -50,13 +51,15 @@ class Kind(NamedTuple):
     also: tuple[str, ...] = ()
     of_estimators: bool = False
     """Of all estimators of a case that have these errors, each named ``quantity/estimator``."""
+    of_tables: bool = False
+    """Of cells of the tables, of cases that are alike but for one number."""
     beside: Callable[[Data, str, Beside], Figure] | None = None
     """How it is drawn with what the tables have beside its errors, if it shows that."""
 
     @property
     def of_one_run(self) -> bool:
         """Return whether it shows what an estimator made of one run."""
-        return not (self.of_all_runs or self.of_simulation or self.of_estimators)
+        return not (self.of_all_runs or self.of_simulation or self.of_estimators or self.of_tables)
 
 
 FIGURES: dict[str, Kind] = {
@@ -109,5 +112,8 @@ FIGURES: dict[str, Kind] = {
         of_estimators=True,
     ),
     "scene": Kind(scene.scene, scene.DATASETS, of_simulation=True),
+    "error_over_value": Kind(
+        error_over_value.error_over_value, error_over_value.COLUMNS, of_tables=True
+    ),
     "target": Kind(target.target, target.DATASETS, of_simulation=True),
 }

@@ -49,6 +49,8 @@ def nees_over_time(data: Data, context: str) -> Figure:
     axis.set_ylim(*_limits(np.concatenate([mean, median, low, high, every])))
     axis.set_ylabel("NEES per dimension")
     time_axis([axis], times)
+    if few:
+        axis.set_xlim(right=float(times[-1]) + _width(times))
     heading(axis, "Normalised estimation error squared", context)
     legend_below(figure, [*_handles("nees_dof" in data), *[_RUN_HANDLE] * few])
     return figure
@@ -58,11 +60,16 @@ def _single_epochs(
     axis: Axes, times: Array, shown: BoolArray, nees: Array, low: Array, high: Array
 ) -> None:
     """Draw every run at the few epochs whose covariance was kept, and the interval as a bar."""
-    width = (times[-1] - times[0]) / 25
+    width = _width(times)
     axis.bar(times[shown], high - low, width, low, color=GREY, alpha=0.25, linewidth=0)
     for time, runs in zip(times[shown], nees[:, shown].T):
         aside = np.linspace(-0.35, 0.35, len(runs)) * width
         axis.plot(time + aside, np.where(runs > 0, runs, np.nan), **_RUN)
+
+
+def _width(times: Array) -> float:
+    """Return how wide the runs of an epoch are drawn beside each other, s."""
+    return float(times[-1] - times[0]) / 25
 
 
 def _over_runs(nees: Array, known: BoolArray) -> tuple[Array, Array]:

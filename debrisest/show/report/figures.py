@@ -12,7 +12,8 @@ from debrisest.results.status import Wanted
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.draw import draw, sources
 from debrisest.show.plots.files import lay_out, save
-from debrisest.show.plots.kinds import FIGURES
+from debrisest.show.plots.gather import Source
+from debrisest.show.plots.kinds import FIGURES, Kind
 
 _DPI, _COLOURS = 90, 64
 
@@ -29,13 +30,19 @@ def pictures(scenario: LoadedScenario, out: Path, wanted: Sequence[Wanted]) -> I
     """Yield every kind of figure of every estimator, each of the first case that has it."""
     seen = set()
     for kind, source in sources(scenario, out, wanted):
-        alone = FIGURES[kind].of_simulation or FIGURES[kind].of_estimators
-        of = (kind, *([] if alone else source.names[-1:]))
+        of = (kind, *_told_apart(FIGURES[kind], source))
         if of in seen:
             continue
         seen.add(of)
         figure = draw(kind, source)
         yield Picture(kind, source.context, _address(figure))
+
+
+def _told_apart(kind: Kind, source: Source) -> tuple[str, ...]:
+    """Return what makes a figure another one than that of the first case: an estimator, a key."""
+    if kind.of_simulation or kind.of_estimators:
+        return ()
+    return source.names if kind.of_tables else source.names[-1:]
 
 
 def _address(figure: Figure) -> str:

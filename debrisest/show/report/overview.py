@@ -69,7 +69,8 @@ def _panel(cells: pd.DataFrame, title: str, reference: str, estimators: Sequence
     for (_, row), (x, begin, end, value) in zip(cells.iterrows(), drawn):
         top = TOP + height * cases.index(row["case"])
         y = top + _BETWEEN / 2 + _STEP * (here.index(row["estimator"]) + 0.5)
-        at, first, last = (_place(each, low, high) for each in (x, begin, end))
+        ends = (each if np.isfinite(each) else x for each in (begin, end))
+        at, first, last = (_place(each, low, high) for each in (x, *ends))
         words = f"{row['case']}, {row['estimator']}: {row['measured']:.3g} {row['unit']}, {x:.3g}"
         colour = estimators.index(row["estimator"])
         marks.append(Mark(colour, at, first, last, y, f"{words} x {reference}"))

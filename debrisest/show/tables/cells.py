@@ -32,7 +32,10 @@ COLUMNS = [
 
 
 def cells(scenario: LoadedScenario, results: Assessed) -> pd.DataFrame:
-    """Return one row per cell, in the order of the layout, then case, estimator, quantity."""
+    """Return one row per cell, in the order of the layout, then case, estimator, quantity.
+
+    The values of a grid have a column each, the last ones, by the paths of their keys.
+    """
     published = published_values(scenario)
     rows = [
         _row(key, estimator, table, scenario, results, published.get(key))
@@ -41,7 +44,10 @@ def cells(scenario: LoadedScenario, results: Assessed) -> pd.DataFrame:
             table, scenario.common.tables, scenario.cases, scenario.common.estimators
         )
     ]
-    return pd.DataFrame([row for row in rows if row is not None], columns=COLUMNS)
+    found = pd.DataFrame([row for row in rows if row is not None], columns=COLUMNS)
+    for key in dict.fromkeys(key for values in scenario.grid.values() for key in values):
+        found[key] = [scenario.grid.get(case, {}).get(key) for case in found["case"]]
+    return found
 
 
 def unexpected(

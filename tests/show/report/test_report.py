@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from debrisest.show.report import page as page_module
 from debrisest.show.report.overview import LEFT, PLOT, panels
 from debrisest.show.tables.cells import COLUMNS
 
@@ -170,3 +171,30 @@ def test_consistency_is_shown_as_it_is_and_what_cannot_be_compared_is_not() -> N
     assert (shown[0].title, shown[0].reference) == ("nees, rmse, end", "1")
     assert all("rate" not in panel.title for panel in shown)
     assert "2 x 1" in shown[0].marks[0].words
+
+
+def test_a_sweep_can_end_with_the_path_of_its_report(
+    small: Path, tmp_path: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    some = ("--case", "slow", "--estimator", "wahba", "--runs", 1, "--report")
+    done = sweep(small, tmp_path / "out", *some)
+    path = tmp_path / "out" / "small" / "report.html"
+    assert done.stdout.splitlines()[-1] == f"report: {path}"
+    assert "data:image/png" in path.read_text(encoding="utf-8")
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    done = sweep(small, tmp_path / "other", *some)
+    assert (done.exit_code, (tmp_path / "other").exists()) == (2, False)
+    assert "pip install 'debrisest[report]'" in done.stderr
+
+
+def test_an_end_that_the_sample_cannot_give_is_not_drawn() -> None:
+    rows = made_up(
+        measured=[3.0, 2.0], ci_low=[2.0, np.nan], ci_high=[np.nan, 4.0], bound=[1.0, 1.0]
+    )
+    (panel,) = panels(rows, ["x"])
+    open_above, open_below = panel.marks
+    assert open_above.low < open_above.x == open_above.high
+    assert open_below.low == open_below.x < open_below.high
+    assert page_module._interval({"ci_low": 2.0, "ci_high": None}) == "from 2"
+    assert page_module._interval({"ci_low": None, "ci_high": 4.0}) == "up to 4"
+    assert page_module._interval({"ci_low": 2.0, "ci_high": 4.0}) == "2 to 4"

@@ -16,7 +16,7 @@ from scipy.stats import chi2
 from debrisest.errors import UserError
 from debrisest.results.assessed import Result
 from debrisest.scenario.load import LoadedScenario, load_scenario
-from debrisest.show.tables.cells import cells, unexpected
+from debrisest.show.tables.cells import COLUMNS, cells, unexpected
 from debrisest.show.tables.render import render
 
 HEADER = (
@@ -427,3 +427,19 @@ def test_json_keeps_the_digits_of_small_figures(scenario: LoadedScenario) -> Non
     rows = rows_of(scenario, slow_triad=result([1.23456e-9] * 3, [0.1] * 3))
     measured = [record["measured"] for record in json.loads(render(scenario, rows, "json"))]
     assert measured[1] == pytest.approx(1.23456e-9, rel=1e-5)
+
+
+def test_values_of_a_grid_are_columns(small: Path) -> None:
+    text = small.read_text().partition("\ncases:")[0].replace("  published: small.csv\n", "")
+    grid = (
+        "grid:\n  sensors.points.noise_m: [0.01, 0.02]\n  motion.rate_deg_s: [[1, 0, 0], [2, 0, 0]]"
+    )
+    small.write_text(f"{text.replace('[slow, fast]', '[]')}\n{grid}\n")
+    scenario = load_scenario(small)
+    nothing = Result({}, np.arange(61.0), {0: "lost"}, 1)
+    rows = cells(scenario, {(case, "wahba"): nothing for case in scenario.cases})
+    keys = ["sensors.points.noise_m", "motion.rate_deg_s"]
+    assert list(rows.columns) == [*COLUMNS, *keys]
+    found = rows.groupby("case", sort=False)[keys].first().to_numpy().tolist()
+    assert found == [[n, r] for n in (0.01, 0.02) for r in ("[1, 0, 0]", "[2, 0, 0]")]
+    assert cells(scenario, {}).columns.to_list() == rows.columns.to_list()
