@@ -13,7 +13,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from debrisest.results.open import open_results
+from debrisest.results.open import find_results
 
 LEAST = 0.01
 
@@ -23,7 +23,7 @@ def shares(folders: list[str]) -> Table:
     seconds: Counter[tuple[str, str, str]] = Counter()
     runs: Counter[tuple[str, str, str]] = Counter()
     for folder in map(Path, folders):
-        for chunk in open_results(folder).chunks:
+        for chunk in find_results(folder).chunks:
             of = (folder.name, chunk.address.estimator or "-", chunk.address.stage)
             seconds[of] += chunk.attributes.get("cpu_s", 0.0)
             runs[of] += chunk.runs

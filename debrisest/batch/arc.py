@@ -14,7 +14,6 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.dynamics import log_inertia
-from debrisest.dynamics.inertia import principal_axes
 from debrisest.dynamics.torque_free import torque_free
 
 TURN, RATE, INERTIA = slice(0, 3), slice(3, 6), slice(6, 11)
@@ -50,7 +49,7 @@ class Course(NamedTuple):
 
 def along(arc: Arc, times: Array) -> tuple[Array, Array]:
     """Return ``q_if (..., time, 4)`` and rates ``(..., time, 3)`` at ``times (time,)``, s."""
-    moments, axes = principal_axes(log_inertia.inertia(arc.log_inertia))
+    moments, axes = log_inertia.principal(arc.log_inertia)
     q_fb = quaternion.from_matrix(axes)
     rate_b = (arc.rate[..., None, :] @ axes)[..., 0, :]
     q_ib, rates_b = torque_free(
@@ -76,7 +75,7 @@ def course(arc: Arc, times: Array) -> Course:
     turn_by, rate_by = np.zeros((2, *arc.q.shape[:-1], len(times), 3, UNKNOWNS))
     turn_by[..., TURN] = np.eye(3)
     steps = step[..., None, None, :]
-    turn_by[..., 3:] = np.moveaxis(quaternion.log(turn), -3, -1) / steps
+    turn_by[..., 3:] = np.moveaxis(turn[..., 1:] / turn[..., :1], -3, -1) / (0.5 * steps)
     rate_by[..., 3:] = np.moveaxis(rate[others] - rate[..., :1, :, :], -3, -1) / steps
     return Course(q[..., 0, :, :], rate[..., 0, :, :], turn_by, rate_by)
 

@@ -142,8 +142,7 @@ def _momentum(arc: Arc) -> Array:
 def _nutation(arc: Arc) -> Array:
     """Angle between the momentum and the circled axis, rad, and the period, s."""
     moments, axes = np.linalg.eigh(log_inertia.inertia(arc.log_inertia))
-    rate = axes.T @ arc.rate
-    motion = nutation(rate, moments)
-    momentum = moments * rate
-    circled = np.abs(momentum[motion.order[0]]) / max(float(np.linalg.norm(momentum)), 1e-300)
+    motion = nutation(axes.T @ arc.rate, moments)
+    circled, *across = np.abs(motion.momentum0)
+    circled /= max(float(np.linalg.norm([circled, *across])), 1e-300)
     return np.array([np.arccos(np.clip(circled, 0.0, 1.0)), 2.0 * motion.period[0]])

@@ -22,16 +22,24 @@ def elliptic(argument: Array, complement: Array) -> tuple[Array, Array, Array]:
     Descending Landen transformations (DLMF 22.7(i)) down to the circular functions. ``1 - k1 sn^2``
     is written as ``(1 - k1) + k1 cn^2``, so that small values of ``cn`` and ``dn`` keep all digits.
     """
-    turns = argument / (4.0 * quarter_period(complement))
-    angle = 2.0 * np.pi * (turns - np.round(turns))
-    sn, cn, dn = np.sin(angle), np.cos(angle), np.ones_like(angle)
+    angle = argument / (4.0 * quarter_period(complement))
+    angle -= np.round(angle)
+    angle *= 2.0 * np.pi
+    sn, cn = np.sin(angle), np.cos(angle)
+    dn = np.ones_like(angle)
     for modulus, rest in reversed(_landen_moduli(complement)):
-        divisor = 1.0 + modulus * sn * sn
-        sn, cn, dn = (
-            (1.0 + modulus) * sn / divisor,
-            cn * dn / divisor,
-            (rest + modulus * cn * cn) / divisor,
-        )
+        divisor = modulus * sn
+        divisor *= sn
+        divisor += 1.0
+        sn *= 1.0 + modulus
+        sn /= divisor
+        next_dn = modulus * cn
+        next_dn *= cn
+        next_dn += rest
+        next_dn /= divisor
+        cn *= dn
+        cn /= divisor
+        dn = next_dn
     return sn, cn, dn
 
 

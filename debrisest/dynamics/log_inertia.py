@@ -29,6 +29,12 @@ def inertia(s: Array) -> Array:
     return _rebuilt(np.exp(values), vectors)
 
 
+def principal(s: Array) -> tuple[Array, Array]:
+    """Principal moments (..., 3) of that inertia and axes (..., 3, 3), a proper rotation."""
+    values, axes = np.linalg.eigh(_matrix(s))
+    return np.exp(values), axes * np.sign(np.linalg.det(axes))[..., None, None]
+
+
 def log_ratios(tensor: Array) -> Array:
     """``s (..., 5)`` of inertia tensors ``(..., 3, 3)`` of any scale; inverse of `inertia`."""
     values, vectors = np.linalg.eigh(tensor)

@@ -26,7 +26,9 @@ class Nutation:
     initial phase; they add up to 1.
     """
 
-    order: IntArray
+    axes: Array
+    """In ``order`` as unit vectors ``(..., 3, 3)``, a row each."""
+    moments: Array
     rate0: Array
     slope: Array
     frequency: Array
@@ -43,22 +45,34 @@ class Nutation:
         """Period ``(..., 1)`` of the component about the circled axis, s."""
         return 2.0 * quarter_period(self.complement) / self.frequency
 
+    @property
+    def momentum0(self) -> Array:
+        """Angular momentum ``(..., 3)`` in ``order``."""
+        return self.moments * self.rate0
+
+    @property
+    def side(self) -> Array:
+        """Side ``(..., 1)`` of the circled axis on which rate and momentum stay, 1 or -1."""
+        return np.copysign(1.0, self.rate0[..., :1])
+
+    @property
+    def hand(self) -> Array:
+        """1 where the axes in ``order`` are right-handed, else -1 (..., 1)."""
+        order = self.axes @ np.arange(3.0)
+        return np.where((order[..., :1] + 1.0) % 3.0 == order[..., 1:2], 1.0, -1.0)
+
     def ordered_rate(self, times: Array) -> Array:
-        """Rates ``(..., time, 3)`` in ``order``; their divisor is a sum of squares."""
+        """Rates ``(..., 3, time)`` in ``order``; their divisor is a sum of squares."""
         a, b, c = (self.rate0[..., [axis]] for axis in range(3))
         slope_a, slope_b, slope_c = (self.slope[..., [axis]] for axis in range(3))
         sn, cn, dn = elliptic(self.frequency * times, self.complement)
         span = sn / self.frequency
-        sums = [
-            a * dn + slope_a * b * c * span * cn,
-            b * cn * dn + slope_b * c * a * span,
-            c * cn + slope_c * a * b * span * dn,
-        ]
-        return np.stack(sums, axis=-1) / (self.dn2 + self.k2_sn2 * cn * cn)[..., None]
-
-    def reordered(self, rates: Array) -> Array:
-        """Rates ``(..., time, 3)`` in the order of the moments, of those in ``order``."""
-        return _pick(rates, np.argsort(self.order, axis=-1)[..., None, :])
+        divisor = self.dn2 + self.k2_sn2 * cn * cn
+        rates = np.empty((*divisor.shape[:-1], 3, divisor.shape[-1]))
+        np.divide(a * dn + slope_a * b * c * span * cn, divisor, out=rates[..., 0, :])
+        np.divide(b * cn * dn + slope_b * c * a * span, divisor, out=rates[..., 1, :])
+        np.divide(c * cn + slope_c * a * b * span * dn, divisor, out=rates[..., 2, :])
+        return rates
 
 
 def nutation(rate0: Array, moments: Array) -> Nutation:
@@ -67,15 +81,16 @@ def nutation(rate0: Array, moments: Array) -> Nutation:
     A body without rate about the circled axis spins steadily.
     """
     slope = (np.roll(moments, -1, axis=-1) - np.roll(moments, -2, axis=-1)) / moments
-    order = _axis_order(rate0, moments, slope)
-    rate0, slope = _pick(rate0, order), _pick(slope, order)
+    axes = np.eye(3)[_axis_order(rate0, moments, slope)]
+    rate0, moments, slope = np.moveaxis(axes @ np.stack([rate0, moments, slope], -1), -1, 0)
     around = -slope[..., 1] * slope[..., 2] * rate0[..., 0] ** 2
     across = slope[..., 0] * slope[..., 2] * rate0[..., 1] ** 2
     steady = around <= _SMALLEST_COMPLEMENT * across
     square = np.where(steady, 1.0, around + across)
     complement = np.maximum(_gap(rate0, slope) / square, _SMALLEST_COMPLEMENT)
     return Nutation(
-        order=order,
+        axes=axes,
+        moments=moments,
         rate0=rate0,
         slope=slope,
         frequency=np.where(steady, _SLOWEST, np.sqrt(square))[..., None],
@@ -87,8 +102,8 @@ def nutation(rate0: Array, moments: Array) -> Nutation:
 
 def _axis_order(rate0: Array, moments: Array, slope: Array) -> IntArray:
     order = np.argsort(moments, axis=-1)
-    gap = _gap(_pick(rate0, order), _pick(slope, order))
-    return np.asarray(np.where(gap[..., None] < 0.0, order[..., ::-1], order))
+    rate0, slope = (np.take_along_axis(values, order, axis=-1) for values in (rate0, slope))
+    return np.asarray(np.where(_gap(rate0, slope)[..., None] < 0.0, order[..., ::-1], order))
 
 
 def _gap(rate: Array, slope: Array) -> Array:
@@ -97,7 +112,3 @@ def _gap(rate: Array, slope: Array) -> Array:
         slope[..., 1] * slope[..., 0] * rate[..., 2] ** 2
         - slope[..., 1] * slope[..., 2] * rate[..., 0] ** 2
     )
-
-
-def _pick(array: Array, order: IntArray) -> Array:
-    return np.take_along_axis(array, order, axis=-1)

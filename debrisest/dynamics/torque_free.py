@@ -8,7 +8,6 @@ import numpy as np
 
 from debrisest.arrays import Array, ComplexArray, IntArray
 from debrisest.attitude import quaternion
-from debrisest.attitude.vectors import cross
 from debrisest.dynamics.elliptic import quarter_period
 from debrisest.dynamics.nutation import Nutation, nutation
 
@@ -25,14 +24,12 @@ def torque_free(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[
     shape = np.broadcast_shapes(q0.shape[:-1], rate0.shape[:-1], moments.shape[:-1])
     rate0, moments = np.broadcast_to(rate0, (*shape, 3)), np.broadcast_to(moments, (*shape, 3))
     motion = nutation(rate0, moments)
-    rate = motion.reordered(motion.ordered_rate(times))
-    circled = np.arange(3) == motion.order[..., :1]
-    reference = np.where(circled, np.copysign(1.0, rate0), 0.0)
-    turn = _precession(times, motion, rate0, moments)
-    return _attitude(q0, moments * rate0, moments[..., None, :] * rate, reference, turn), rate
+    rate = motion.ordered_rate(times)
+    q_ib = _attitude(q0, motion, rate, _precession(times, motion))
+    return q_ib, np.swapaxes(np.swapaxes(motion.axes, -1, -2) @ rate, -1, -2)
 
 
-def _precession(times: Array, motion: Nutation, rate0: Array, moments: Array) -> Array:
+def _precession(times: Array, motion: Nutation) -> Array:
     """Turn about the angular momentum, ``(..., time)``, rad.
 
     Its rate ``(2 T + L w_a) / (L + J_a w_a)`` is smooth and has the period of the circled
@@ -40,20 +37,22 @@ def _precession(times: Array, motion: Nutation, rate0: Array, moments: Array) ->
     """
     counts = _sample_counts(motion.complement[..., 0])
     harmonics = np.zeros((*counts.shape, counts.max(initial=0) // 2 + 1), dtype=np.complex128)
-    for count in np.unique(counts):
+    for count in set(counts.ravel().tolist()):
         some = counts == count
-        speed = _speed(motion.of(some), rate0[some], moments[some], int(count))
+        speed = _speed(motion.of(some), count)
         harmonics[some, : count // 2 + 1] = np.fft.rfft(speed, norm="forward")
     return _integrate_periodic(harmonics, motion.period, times)
 
 
-def _speed(motion: Nutation, rate0: Array, moments: Array, count: int) -> Array:
+def _speed(motion: Nutation, count: int) -> Array:
     """Rate of the turn at so many times of a period, ``(..., count)``, rad/s."""
-    momentum = np.maximum(np.linalg.norm(moments * rate0, axis=-1), _AT_REST)[..., None]
-    twice_energy = np.sum(moments * rate0**2, axis=-1)[..., None]
-    moment = np.take_along_axis(moments, motion.order[..., :1], axis=-1)
-    circled = np.abs(motion.ordered_rate(motion.period * np.arange(count) / count)[..., 0])
-    return np.asarray((twice_energy + momentum * circled) / (momentum + moment * circled))
+    momentum = np.maximum(np.linalg.norm(motion.momentum0, axis=-1), _AT_REST)[..., None]
+    twice_energy = np.sum(motion.momentum0 * motion.rate0, axis=-1)[..., None]
+    samples = motion.period * np.arange(count) / count
+    circled = np.abs(motion.ordered_rate(samples)[..., 0, :])
+    return np.asarray(
+        (twice_energy + momentum * circled) / (momentum + motion.moments[..., :1] * circled)
+    )
 
 
 def _sample_counts(complement: Array) -> IntArray:
@@ -75,25 +74,43 @@ def _integrate_periodic(harmonics: ComplexArray, period: Array, times: Array) ->
     terms = 2.0 * harmonics[..., 1:] / number
     tails = np.cumsum(terms[..., ::-1], axis=-1)
     half_angle = np.pi * times / period
-    z = np.exp(2j * half_angle)
-    total = np.zeros_like(z)
+    sine, half = np.sin(half_angle), np.empty(half_angle.shape, dtype=np.complex128)
+    half.real, half.imag = np.cos(half_angle), sine
+    z, total = half * half, np.zeros_like(half)
     for tail in np.moveaxis(tails, -1, 0)[..., None]:
-        total = total * z + tail
-    chord = np.sin(half_angle) * period / np.pi * np.exp(1j * half_angle)
+        total *= z
+        total += tail
+    chord = (sine * period / np.pi) * half
     return np.asarray(harmonics[..., :1].real * times + (chord * total).real)
 
 
-def _attitude(q0: Array, momentum0: Array, momentum: Array, reference: Array, turn: Array) -> Array:
-    """``q_ib``: the momentum's body direction to the reference axis, the turn, then to inertial."""
-    half = 0.5 * turn[..., None]
-    about = np.concatenate([np.cos(half), np.sin(half) * reference[..., None, :]], axis=-1)
-    arc = _shortest_arc(momentum, reference[..., None, :])
-    to_inertial = quaternion.multiply(q0, quaternion.conjugate(_shortest_arc(momentum0, reference)))
-    return quaternion.multiply(to_inertial[..., None, :], quaternion.multiply(about, arc))
+def _attitude(q0: Array, motion: Nutation, rate: Array, turn: Array) -> Array:
+    """``q_ib (..., time, 4)`` of the ``rate (..., 3, time)`` in order and the turn."""
+    axes = np.zeros((*turn.shape[:-1], 4, 4))
+    axes[..., 0, 0], axes[..., 1:, 1:] = 1.0, motion.axes
+    start = _about_momentum(motion, motion.rate0[..., None], np.zeros((*turn.shape[:-1], 1)))
+    inverse = quaternion.conjugate(np.sum(start * axes, axis=-2) / np.sum(start**2, axis=-2))
+    to_inertial = quaternion.multiply(q0, inverse)[..., None, :]
+    by = np.swapaxes(quaternion.multiply(to_inertial, axes), -1, -2)
+    return np.swapaxes(by @ _about_momentum(motion, rate, turn), -1, -2)
 
 
-def _shortest_arc(vector: Array, direction: Array) -> Array:
-    """Unit quaternion that turns ``vector`` into ``direction``, which is not opposite to it."""
-    norm = np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), _AT_REST)
-    scalar = 1.0 + np.sum(vector * direction, axis=-1, keepdims=True) / norm
-    return quaternion.normalize(np.concatenate([scalar, cross(vector / norm, direction)], -1))
+def _about_momentum(motion: Nutation, rate: Array, turn: Array) -> Array:
+    """Shortest arc of the momentum to the circled axis, then the turn, ``(..., 4, time)``.
+
+    The arc ends on that side of the axis on which the momentum always is, which is never opposite.
+    The vectors are in the axes in order. Of a body at rest all are shorter by the same factor.
+    """
+    norm = np.maximum(np.linalg.norm(motion.momentum0, axis=-1), _AT_REST)[..., None]
+    by_rate = (motion.moments / norm)[..., None]
+    cosine = np.sqrt(0.5 + 0.5 * motion.side * by_rate[..., 0, :] * rate[..., 0, :])
+    b, c = (0.5 * by_rate[..., axis, :] * rate[..., axis, :] / cosine for axis in (1, 2))
+    half = 0.5 * turn
+    cos, sin = np.cos(half), np.sin(half)
+    result = np.empty((*turn.shape[:-1], 4, turn.shape[-1]))
+    np.multiply(cos, cosine, out=result[..., 0, :])
+    np.multiply(motion.side * sin, cosine, out=result[..., 1, :])
+    cos *= motion.side * motion.hand
+    np.add(sin * b, cos * c, out=result[..., 2, :])
+    np.subtract(sin * c, cos * b, out=result[..., 3, :])
+    return result

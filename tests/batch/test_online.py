@@ -39,7 +39,7 @@ def test_the_batch_is_run_less_and_less_often() -> None:
 def test_later_epochs_are_not_known(tumbling, box, points, found) -> None:
     spoilt = points[0].copy()
     spoilt[60:] += np.random.default_rng(0).normal(size=spoilt[60:].shape)
-    early = stretches(tumbling, spoilt, box, EPOCHS)
+    early = stretches(tumbling, spoilt, box, 71)
     seen = 0
     for mine, theirs in zip(early, found[0]):
         if np.searchsorted(tumbling.times, mine.path.times[0]) < 60:

@@ -20,7 +20,7 @@ class Batch(FilterPart):
     """
 
     takes = "motion_model"
-    version = 4
+    version = 5
     makes_start = True
     kind: Literal["batch"]
     online: bool = False
