@@ -4,8 +4,8 @@ The calls of a notebook are here; each is imported when it is first asked for.
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = False  # that of typing costs as much as the start of Python, where none listens
 if TYPE_CHECKING:
     from debrisest.errors import UserError
     from debrisest.notebook import estimate, load, run, schema
@@ -33,7 +33,7 @@ _HOME = {
 }
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     """Import a call and return it."""
     if name not in _HOME:
         raise AttributeError(f"module 'debrisest' has no attribute {name!r}")

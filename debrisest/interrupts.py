@@ -8,7 +8,6 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import Any
 
 SENTENCE = "interrupted: finished steps are kept, the same command goes on from there"
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -43,7 +42,7 @@ def raised() -> Iterator[Callable[[], None]]:
     """
     seen: list[int] = []
 
-    def raise_interrupted(number: int, _: Any) -> None:
+    def raise_interrupted(number: int, _: object) -> None:
         seen.append(number)
         listen()
         raise Interrupted(number)
@@ -64,12 +63,12 @@ def raised() -> Iterator[Callable[[], None]]:
     check()
 
 
-def _tell_unless_interrupted(swallowed: Any) -> None:
+def _tell_unless_interrupted(swallowed: "sys.UnraisableHookArgs") -> None:
     if not isinstance(swallowed.exc_value, Interrupted):
         sys.__unraisablehook__(swallowed)
 
 
-def _end(number: int, _: Any) -> None:
+def _end(number: int, _: object) -> None:
     with suppress(Exception):
         sys.stdout.flush()
     os.write(2, f"{SENTENCE}\n".encode())

@@ -2,6 +2,7 @@
 
 import os
 import socket
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -17,8 +18,9 @@ _NEXT = "wait until it ends, or choose another folder with --out"
 def locked(folder: Path) -> Iterator[None]:
     """Hold a folder's lock, which ends with the process that holds it, however it ends.
 
-    Raises UserError, with who holds it, where another process does. A folder that cannot be
-    written to, or whose file system has no locks, is not locked.
+    Raises UserError, with who holds it, where another process does, and where something else than
+    a file has the lock's name. A folder that cannot be written to, or whose file system has no
+    locks, is not locked.
     """
     path = folder / LOCK
     try:
@@ -27,6 +29,7 @@ def locked(folder: Path) -> Iterator[None]:
     except BlockingIOError:
         raise UserError(f"{folder}: {_holder(path)} writes there now; {_NEXT}") from None
     except OSError:
+        _require_file(path)
         descriptor = None
     try:
         yield
@@ -50,6 +53,13 @@ def _hold(path: Path) -> int:
             os.close(descriptor)
             raise
         os.close(descriptor)  # of a file that was removed before it was locked
+
+
+def _require_file(path: Path) -> None:
+    """Raise UserError where what has the lock's name cannot be one."""
+    with suppress(OSError):
+        if not stat.S_ISREG(path.lstat().st_mode):
+            raise UserError(f"{path}: this is no file, so that it cannot be a lock; move it away")
 
 
 def _holder(path: Path) -> str:

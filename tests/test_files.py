@@ -144,6 +144,23 @@ def test_a_lock_ends_with_its_process(tmp_path: Path, start: Callable) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("kind", ["folder", "pipe", "loop", "link to a folder"])
+def test_what_is_no_file_is_no_lock(kind: str, small: Path, swept: Path, sweep: Callable) -> None:
+    lock = swept / "small" / ".lock"
+    make: dict[str, Callable] = {
+        "folder": lock.mkdir,
+        "pipe": lambda: os.mkfifo(lock),
+        "loop": lambda: lock.symlink_to(lock),
+        "link to a folder": lambda: lock.symlink_to(swept),
+    }
+    make[kind]()
+    done = sweep(small, swept)
+    assert (done.exit_code, done.stdout) == (2, "")
+    told = f"{lock}: this is no file, so that it cannot be a lock; move it away\n"
+    assert done.stderr == told
+    assert os.path.lexists(lock)
+
+
 def test_two_sweeps_in_one_folder(
     small: Path, swept: Path, sweep: Callable, start: Callable
 ) -> None:

@@ -29,3 +29,10 @@ def test_the_help_imports_nothing_heavy() -> None:
 
 def test_the_help_of_a_command_imports_nothing_heavy() -> None:
     assert loaded("sweep", "--help") == "heavy: []"
+
+
+def test_signals_are_listened_to_before_anything_is_imported() -> None:
+    """The module ``typing`` alone takes as long as the rest of Python's start."""
+    code = "import sys, debrisest.interrupts; print('typing' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"

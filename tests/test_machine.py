@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from debrisest.results import store
+
 ONE = ("--case", "slow", "--estimator", "triad", "--jobs", "1")
 
 
@@ -146,6 +148,28 @@ def test_a_code_page_that_lacks_letters(small: Path, reference: Path, shell: Cal
     done = shell("$debrisest table small.yaml", PYTHONIOENCODING="ascii")
     assert done.returncode == 0
     assert "\\u03b4 of the recovered attitude" in done.stdout
+
+
+ODD_ENVIRONMENTS = {
+    "numbers": {"COLUMNS": "\u00b2", "LINES": "\u0bf0", "SOURCE_DATE_EPOCH": "soon"},
+    "terminal": {"COLUMNS": "0", "TERM": "\x1b[2J", "NO_COLOR": "1", "FORCE_COLOR": "1"},
+    "python": {"PYTHONOPTIMIZE": "2", "PYTHONWARNINGS": "error", "PYTHONHASHSEED": "3"},
+    "language": {"LC_ALL": "xx_YY", "LANG": "xx.UTF-99", "PYTHONUTF8": "0"},
+    "folders": {"HOME": "/dev/null", "TMPDIR": "/nonexistent", "GIT_DIR": "/x"},
+    "libraries": {"MPLBACKEND": "nosuch", "OMP_NUM_THREADS": "x", "HDF5_USE_FILE_LOCKING": "x"},
+}
+
+
+@pytest.mark.parametrize("name", ODD_ENVIRONMENTS)
+def test_odd_environments_change_no_result(
+    name: str, tmp_path: Path, reference: Path, shell: Callable
+) -> None:
+    line = f"$debrisest sweep small.yaml {' '.join(ONE)}"
+    done = shell(f"{line} && $debrisest table small.yaml", **ODD_ENVIRONMENTS[name])
+    assert done.returncode == 0, done.stderr
+    path = Path("small") / "slow" / "assess-triad.000000.h5"
+    ours, whole = (store.read(out / path) for out in (tmp_path / "results", reference))
+    assert all(ours[key].tobytes() == value.tobytes() for key, value in whole.items())
 
 
 @pytest.mark.parametrize("command", ["table", "sweep", "status", "plot"])

@@ -3,6 +3,7 @@
 import json
 import tempfile
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -50,7 +51,7 @@ def rerun(path: Path, plugins: tuple[Plugin, ...] = ()) -> Rerun:
             compute([step])
         since, _ = out_of_date(steps[-1], store.inspect(path))
         before, now = store.read(path), store.read(steps[-1].path)
-    return Rerun(steps[-1].name, len(now), since, list(_differences(before, now)))
+    return Rerun(_name(path, steps[-1]), len(now), since, list(_differences(before, now)))
 
 
 def _attributes(path: Path) -> dict[str, Any]:
@@ -66,8 +67,7 @@ def _steps(
     path: Path, attributes: dict[str, Any], folder: Path, plugins: tuple[Plugin, ...]
 ) -> list[Step]:
     """Return the steps that lead to a file, itself the last."""
-    address = Address.of(path)
-    config = folder / f"{address.scenario if address else 'stored'}.yaml"
+    config = folder / "stored.yaml"
     config.write_text(attributes["scenario"], encoding="utf-8")
     try:
         scenario = load_scenario(config, plugins=plugins)
@@ -79,6 +79,13 @@ def _steps(
     selection = Selection(first + runs, None, chosen, attributes["stage"])
     steps = plan(scenario, folder, selection)
     return [step for step in steps if step.address.first_run == first]
+
+
+def _name(path: Path, step: Step) -> str:
+    """Return what a file is called in messages: its folder may have a name no scenario has."""
+    there = Address.of(path)
+    scenario = there.scenario if there else step.address.scenario
+    return replace(step, address=step.address._replace(scenario=scenario)).name
 
 
 def _missing(path: Path, attributes: dict[str, Any], plugins: tuple[Plugin, ...]) -> Iterator[str]:

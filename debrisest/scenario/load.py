@@ -26,7 +26,7 @@ from debrisest.scenario.grid import points
 from debrisest.scenario.limits import extreme_numbers
 from debrisest.scenario.measured import told_by_data
 from debrisest.scenario.mistakes import NAMED, validated
-from debrisest.scenario.names import case_name_problems, check_scenario_name
+from debrisest.scenario.names import VARIANT, case_name_problems, check_scenario_name
 from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
 
 NOMINAL = "nominal"
@@ -48,7 +48,7 @@ class LoadedScenario(NamedTuple):
     @property
     def name(self) -> str:
         """Return the scenario's name, the stem of its file, and that of its variant."""
-        return f"{self.path.stem}@{self.variant}" if self.variant else self.path.stem
+        return f"{self.path.stem}{VARIANT}{self.variant}" if self.variant else self.path.stem
 
     def called(self, variant: str) -> "LoadedScenario":
         """Return the same with results of its own, beside those of other variants."""

@@ -19,6 +19,8 @@ UNCARRIED = re.compile(
 """Characters that control lines or the direction of writing, and halves that no file can hold."""
 _TAKEN = ("tables.", "report.", "estimates.")
 _FORMULA = ("=", "+", "-", "@")
+VARIANT = "@"
+"""Stands between the name of a scenario and that of its variant."""
 
 
 def _name(signs: str, most: int, told: str) -> Any:
@@ -52,6 +54,11 @@ def check_scenario_name(path: Path) -> None:
             f"{path}: the scenario would be called {name!r}, after its file; a name neither begins "
             f"with one of {' '.join(_FORMULA)} nor with a dot or a blank, nor ends with these, "
             "has no control characters, and is no device of Windows; rename the file"
+        )
+    if VARIANT in name:
+        raise UserError(
+            f"{path}: a scenario's name has no {VARIANT}, which stands before the name of a "
+            "variant (--variant), in whose folder its results would lie; rename the file"
         )
     if len(name.encode()) > MOST_LETTERS:
         raise UserError(f"{path}: a scenario's name has at most {MOST_LETTERS} letters; rename it")

@@ -43,6 +43,15 @@ def test_the_same_bytes(stage: str, swept: Path, cli: Callable) -> None:
     assert told.stdout.startswith(f"{path}: same bytes (small slow: {stage.replace('-', ' ')}")
 
 
+@pytest.mark.parametrize("folder", ["small@twin", "=copied.", "con"])
+def test_from_folders_whose_names_no_scenario_has(folder: str, swept: Path, cli: Callable) -> None:
+    (swept / "small").rename(swept / folder)
+    path = swept / folder / "slow" / "filter-triad.000000.h5"
+    told = cli("rerun", path)
+    assert (told.exit_code, told.stderr) == (0, "")
+    assert told.stdout.startswith(f"{path}: same bytes ({folder} slow: filter triad, runs 0-2")
+
+
 GRID = "grid: {sensors.points.noise_m: [0.01, 0.02], motion.rate_deg_s: [[1, 2, 3]]}\n"
 CASE = "fast,noise_m=0.02,rate_deg_s=1,2,3"
 

@@ -51,7 +51,7 @@ def test_each_is_refused_with_place_and_reason(name: str, small: Path, cli: Any)
 
 
 @pytest.mark.parametrize(
-    "stem", [".", "..", "=cmd", "-x", "a\tb", "x" * 101, "a.", "\udcff", "Nul", "com1.old"]
+    "stem", [".", "..", "=cmd", "-x", "a\tb", "x" * 101, "a.", "\udcff", "Nul", "com1.old", "a@b"]
 )
 def test_a_file_whose_name_cannot_be_a_folders(stem: str, small: Path, cli: Any) -> None:
     config = small.with_name(f"{stem}.yaml")
