@@ -123,6 +123,15 @@ def test_those_that_are_not_are_seldom_doubted(acceleration: float) -> None:
     assert agitated(5, acceleration) <= 0.02
 
 
+def test_clutter_in_the_gate_is_not_taken_for_accelerations() -> None:
+    scans = drawn(8)
+    apart = np.random.default_rng(9).uniform(-4.0, 4.0, (RUNS, EPOCHS, 2, 3, 2))
+    start = np.zeros((RUNS, 2)), np.tile(P0, (RUNS, 1, 1))
+    crowd = np.concatenate([scans, scans + apart], axis=-2)
+    counts = associated(MODEL, *start, crowd, Validation(9.21, 0.99)).counts
+    assert agitation_test(log_ratio(counts["likelihood"])).failed.mean() <= 0.02
+
+
 def share_of_pairs(shown):
     """Test of detections (time, run, sensor, detection, 2) with unit noise."""
     counted = [pairs(*each, np.eye(2)) for each in pairwise(shown)]
@@ -145,7 +154,7 @@ def test_pieces_that_stay_are_told_also_among_clutter(count: int) -> None:
     assert share_of_pairs(np.concatenate([pieces, clutter], axis=-2)).failed.mean() > 0.95
 
 
-@pytest.mark.parametrize(("count", "told"), [(12, True), (1, False)])
+@pytest.mark.parametrize(("count", "told"), [(30, True), (1, False)])
 def test_the_nearest_is_wrong_as_often_as_the_distances_say(count: int, told: bool) -> None:
     rng = np.random.default_rng(7)
     own = rng.normal(size=(RUNS, EPOCHS, 2, 1, 2)) * R.diagonal() ** 0.5

@@ -44,16 +44,16 @@ def predicted(bank: Bank, transition: Array, noise: Array) -> Bank:
 def corrected(bank: Bank, made: Correction) -> tuple[Bank, Array]:
     """Return it after an update of the track, and the logarithmic likelihoods (run, filter).
 
-    A detection that is the target's with the probability b counts as one with a covariance of
-    R / b, all of it multiplied by the root of b.
+    The combined innovation of a sensor is taken for what the target shows times the probability
+    that it is seen, with the spread that the update has for it.
     """
-    root = np.sqrt(made.trusted[:, :1])
-    h = root[..., None] * made.shown[:, :1]
-    shown = made.innovation[:, :1] / np.maximum(root, 1e-6)
+    seen = made.trusted[:, :1, :, None]
+    h = seen * made.shown[:, :1]
+    unseen = np.where(seen > 0.0, 0.0, made.total[:, :1] - made.own[:, :1])
+    noise = made.spread[:, :1] + unseen
     cross = h @ bank.covariance
-    noise = made.total[:, :1] - made.own[:, :1]
     total = cross @ np.swapaxes(h, -2, -1) + noise
-    innovation = shown - (h @ bank.apart[..., None])[..., 0]
+    innovation = made.innovation[:, :1] - (h @ bank.apart[..., None])[..., 0]
     solved = solve(total, np.concatenate([cross, innovation[..., None]], axis=-1))
     gain, white = solved[..., :-1], solved[..., -1]
     kept = np.eye(h.shape[-1]) - np.swapaxes(gain, -2, -1) @ h
