@@ -22,8 +22,10 @@ _SIGMAS_OF_SCORES = 4.0
 """Of a normal distribution, once in 16 000 times."""
 
 
-_TOLD = 0.8
-"""Part of the stated information that views must hold."""
+_RATIO, _MOST = 10.0, 700.0
+"""Of likelihoods, from which on there is doubt; and the largest logarithm that is told."""
+_TOLD = 0.64
+"""Part of the stated information that views must hold, so that errors are 1.25 times as large."""
 _CROWDED = 0.6
 """Share of near pairs where clutter is dense in the middle; of pieces that stay it is 0.73."""
 _CLAIMED = 2.0
@@ -152,14 +154,17 @@ def crowd_test(mistaken: Array, looked: Array) -> SelfTest:
     )
 
 
-def agitation_test(sigmas: Array) -> SelfTest:
-    """Test whether innovations go with those before, by as many sigmas (run,), as process noise has
-    it that is larger than stated."""
+def agitation_test(log_ratio: Array) -> SelfTest:
+    """Test the ratio of likelihoods (run,) of a model with more process noise and the model's own.
+
+    Its mean is one if the latter is right; that it is `_RATIO` is far less likely than 1 / `_RATIO`
+    where what the noise does can be seen a few times only, 0.007 as counted.
+    """
     return SelfTest(
-        sigmas,
-        _SIGMAS_OF_SCORES,
-        "innovations follow those before them by {value} sigma, {limit} at most by chance: "
-        "something moves or errs in a way that the model does not have",
+        np.exp(np.minimum(log_ratio, _MOST)),
+        _RATIO,
+        "what is seen is {value} times as likely ({limit} by chance at most) if accelerations are "
+        "larger than stated: something moves or errs in a way that the model does not have",
     )
 
 

@@ -2,10 +2,10 @@
 
 A filter that forgets follows even what its model does not have; its innovations have the right
 size, and yet they go with what would be seen. For each doubted number that is the derivative of
-the prediction by it, through all updates before, and for accelerations larger than stated what a
-filter that expects them predicts otherwise. Times the whitened innovation it is Rao's score, or its
-like for a distant alternative. If the model is right each product has the mean zero, whatever went
-before, so that their sum over its sigma is normal.
+the prediction by it, through all updates before. Times the whitened innovation it is Rao's score:
+if the model is right each product has the mean zero, whatever went before, so that their sum over
+its sigma is normal. Accelerations larger than stated are not a number but a noise: these are told
+by the likelihood of filters that expect them (`restless`).
 """
 
 from typing import NamedTuple
@@ -13,43 +13,51 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
+from debrisest.filters.association import restless
 from debrisest.filters.association.update import Correction
 from debrisest.filters.linear_algebra import solve
 from debrisest.filters.scan_model import ScanModel
 
-_RESTLESS = 10.0
-"""Process noise of the other filter in units of the model's own."""
 
-
-class Pull(NamedTuple):
+class Beside(NamedTuple):
     """How the estimate of the target would be another one if the model were."""
 
-    state: Array
-    """Derivatives of the state by the doubts, and behind them the difference of the state by more
-    process noise, (run, n, doubt + 1)."""
-    spread: Array
-    """Covariance with more process noise, (run, n, n)."""
+    pull: Array
+    """Derivatives of the state by the doubts, (run, n, doubt)."""
+    bank: restless.Bank
 
 
-class Scores(NamedTuple):
-    """Sums over the epochs, (run, doubt + 1) each, of products and of what they are made of."""
+class Evidence(NamedTuple):
+    """What updates show, or sums of it over the epochs."""
 
     score: Array
+    """Products of innovations and what they would be for each doubt, (run, doubt)."""
     square: Array
     information: Array
+    likelihood: Array
+    """Logarithmic, of each filter of the bank, (run, filter)."""
 
-    def add(self, runs: IntArray, score: Array, information: Array) -> None:
-        """Add what an update of some runs shows, in place."""
-        self.score[runs] += score
-        self.square[runs] += score**2
-        self.information[runs] += information
+    def plus(self, other: "Evidence") -> "Evidence":
+        """Add them."""
+        return Evidence(*(mine + more for mine, more in zip(self, other)))
+
+    def add(self, runs: IntArray, shown: "Evidence") -> None:
+        """Add what an epoch shows of some runs, whose products count as one, in place."""
+        for total, values in zip(self, shown._replace(square=shown.score**2)):
+            total[runs] += values
 
 
-def nothing_yet(model: ScanModel, state: Array, covariance: Array) -> tuple[Pull, Scores]:
+def nothing_yet(model: ScanModel, state: Array, covariance: Array) -> tuple[Beside, Evidence]:
     """Return where all begins, for states (run, n)."""
-    (runs, n), numbers = state.shape, len(model.doubts) + 1
-    sums = [np.zeros((runs, numbers)) for _ in Scores._fields]
-    return Pull(np.zeros((runs, n, numbers)), covariance), Scores(*sums)
+    (runs, n), doubts = state.shape, len(model.doubts)
+    beside = Beside(np.zeros((runs, n, doubts)), restless.begun(covariance))
+    return beside, no_evidence(runs, doubts)
+
+
+def no_evidence(runs: int, doubts: int) -> Evidence:
+    """Return no evidence."""
+    score, square, information = np.zeros((3, runs, doubts))
+    return Evidence(score, square, information, np.zeros((runs, len(restless.FACTORS))))
 
 
 def score_sigma(square: Array, information: Array) -> Array:
@@ -60,35 +68,23 @@ def score_sigma(square: Array, information: Array) -> Array:
     return np.minimum(square, information) ** 0.5
 
 
-def predicted(pull: Pull, transition: Array, noise: Array) -> Pull:
+def predicted(beside: Beside, transition: Array, noise: Array) -> Beside:
     """Return it an epoch later."""
-    spread = transition @ pull.spread @ np.swapaxes(transition, -2, -1)
-    return Pull(transition @ pull.state, spread + _RESTLESS**2 * noise)
+    return Beside(transition @ beside.pull, restless.predicted(beside.bank, transition, noise))
 
 
-def corrected(pull: Pull, made: Correction, doubted: Array) -> tuple[Pull, Array, Array]:
-    """Return it after an update of the target, and products and information (run, doubt + 1).
+def corrected(beside: Beside, made: Correction, doubted: Array) -> tuple[Beside, Evidence]:
+    """Return it after an update of the target, and what this shows.
 
     ``doubted (run, sensor, d, doubt)`` is the derivative of the points that are shown.
     """
-    h, total, gain = made.shown[:, 0], made.total[:, 0], made.gain[:, 0]
-    trusted, innovation = made.trusted[:, 0, :, None], made.innovation[:, 0, :, None]
-    change = h @ pull.state
-    change[..., :-1] += doubted.reshape(*change.shape[:2], -1)
-    white = solve(total, np.concatenate([innovation, change], axis=-1))
+    h, trusted = made.shown[:, 0], made.trusted[:, 0, :, None]
+    change = h @ beside.pull + doubted.reshape(*h.shape[:2], -1)
+    innovation = made.innovation[:, 0, :, None]
+    white = solve(made.total[:, 0], np.concatenate([innovation, change], axis=-1))
     expected = trusted * change
-    spread, other = _restless(pull.spread, h, total - made.own[:, 0], trusted)
-    moved = np.swapaxes(gain, -2, -1) @ expected
-    moved[..., -1:] = np.swapaxes(other, -2, -1) @ expected[..., -1:]
-    moved[..., -1:] -= np.swapaxes(other - gain, -2, -1) @ innovation
+    pull = beside.pull - np.swapaxes(made.gain[:, 0], -2, -1) @ expected
     score = (change * white[..., :1]).sum(-2)
-    return Pull(pull.state - moved, spread), score, (expected * white[..., 1:]).sum(-2)
-
-
-def _restless(spread: Array, h: Array, noise: Array, trusted: Array) -> tuple[Array, Array]:
-    """Covariance after the update of a filter with more process noise, and its gain, transposed."""
-    cross = h @ spread
-    gain = solve(cross @ np.swapaxes(h, -2, -1) + noise, cross)
-    kept = np.eye(h.shape[-1]) - np.swapaxes(gain, -2, -1) @ (trusted * h)
-    added = np.swapaxes(gain, -2, -1) @ (trusted * noise @ gain)
-    return kept @ spread @ np.swapaxes(kept, -2, -1) + added, gain
+    bank, likelihood = restless.corrected(beside.bank, made)
+    information = (expected * white[..., 1:]).sum(-2)
+    return Beside(pull, bank), Evidence(score, 0.0 * score, information, likelihood)

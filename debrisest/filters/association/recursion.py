@@ -7,7 +7,14 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.association.companions import pairs, unclaimed
-from debrisest.filters.association.evidence import Pull, corrected, nothing_yet, predicted
+from debrisest.filters.association.evidence import (
+    Beside,
+    Evidence,
+    corrected,
+    no_evidence,
+    nothing_yet,
+    predicted,
+)
 from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh, update
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.runs import take
@@ -76,10 +83,7 @@ class _Look(NamedTuple):
     """What an epoch shows beside the state."""
 
     seen: _Seen
-    product: Array
-    """Of innovations and what they would be for each doubt, and the information of it,
-    (run, doubt + 1)."""
-    information: Array
+    evidence: Evidence
     others: Array
     """Detections that are likely no track's, (run, sensor, detection, d)."""
 
@@ -94,67 +98,66 @@ def filtered(
 ) -> Estimates:
     """Return the estimates of track 0; `state` (run, track, n), else as `associated`.
 
-    The counts hold sums over the epochs too, the `Scores` by their names.
+    The counts hold sums over the epochs too, the `Evidence` by its names.
     """
     names, epochs, counts = model.error_names, scans.shape[1], dict.fromkeys(COUNTED, 0.0)
     start = state[:, 0], covariance[:, 0]
     writer = EstimatesWriter(names, *start, epochs, keep, counts, totals=["repairs"])
     tracks, nominal, going = Tracks(state, covariance), state, writer.runs
-    pull, scores = nothing_yet(model, *start)
+    beside, evidence = nothing_yet(model, *start)
     before = np.full((len(state), *scans.shape[2:]), np.nan)
     with np.errstate(all="ignore"):
         for k in range(epochs):
             if len(going) < len(nominal):
                 model, tracks, nominal = model.of(going), take(tracks, going), nominal[going]
                 scans, settings, before = scans[going], settings.of(going), before[going]
-                pull = take(pull, going)
+                beside = take(beside, going)
             if len(going) == 0:
                 break
             if k > 0:
-                tracks, pull, nominal = _predict(model, tracks, pull, nominal, k - 1)
+                tracks, beside, nominal = _predict(model, tracks, beside, nominal, k - 1)
             if settings.truth is not None:
                 nominal = settings.truth[:, None, k]
-            tracks, pull, look = _look(model, tracks, pull, nominal, scans[:, k], settings, k)
-            scores.add(writer.runs, look.product, look.information)
+            tracks, beside, look = _look(model, tracks, beside, nominal, scans[:, k], settings, k)
+            evidence.add(writer.runs, look.evidence)
             (near, ring), before = pairs(before, look.others, model.noise), look.others
             if settings.relinearise > 0 and (k + 1) % settings.relinearise == 0:
                 nominal = tracks.state
             target = tracks.state[:, 0], tracks.covariance[:, 0]
             going = writer.record(k, *target, look.seen._asdict() | {"near": near, "ring": ring})
     found = writer.estimates()
-    return found._replace(counts=found.counts | scores._asdict())
+    return found._replace(counts=found.counts | evidence._asdict())
 
 
 def _predict(
-    model: ScanModel, tracks: Tracks, pull: Pull, nominal: Array, k: int
-) -> tuple[Tracks, Pull, Array]:
+    model: ScanModel, tracks: Tracks, beside: Beside, nominal: Array, k: int
+) -> tuple[Tracks, Beside, Array]:
     moved = model.process(nominal, k)
     transition = np.broadcast_to(model.process_jacobian(nominal, k), tracks.covariance.shape)
     transposed = np.swapaxes(transition, -2, -1)
     lag = (tracks.state - nominal)[..., None, :] @ transposed
     covariance = transition @ tracks.covariance @ transposed
     covariance = 0.5 * (covariance + np.swapaxes(covariance, -2, -1)) + model.process_noise
-    pull = predicted(pull, transition[:, 0], model.process_noise)
-    return Tracks(moved + lag[..., 0, :], covariance), pull, moved
+    beside = predicted(beside, transition[:, 0], model.process_noise)
+    return Tracks(moved + lag[..., 0, :], covariance), beside, moved
 
 
 def _look(
     model: ScanModel,
     tracks: Tracks,
-    pull: Pull,
+    beside: Beside,
     nominal: Array,
     scan: Array,
     settings: AssociationSettings,
     k: int,
-) -> tuple[Tracks, Pull, _Look]:
+) -> tuple[Tracks, Beside, _Look]:
     """Update by all sensors; `scan` is (run, sensor, detection, d)."""
     shown = model.points(nominal, k)
     h = np.broadcast_to(model.points_jacobian(nominal, k), (*shown.shape, nominal.shape[-1]))
     nothing = np.zeros(len(scan), dtype=np.int64)
     zero = nothing.astype(np.float64)
     seen = _Seen(zero, nothing, nothing, nothing, nothing, nothing, zero)
-    doubted, numbers = _doubted(model, nominal, k), pull.state.shape[-1]
-    product, information = np.zeros((2, len(scan), numbers))
+    doubted, evidence = _doubted(model, nominal, k), no_evidence(len(scan), len(model.doubts))
     others = np.full(scan.shape, np.nan)
     for group in _groups(shown.shape[-2], settings.stacked):
         lag = tracks.state - nominal
@@ -163,10 +166,10 @@ def _look(
         part = Scan(innovation, h[:, :, group])
         tracks, made, judged = update(tracks, part, model.noise, settings.gate, settings.weigh)
         seen = seen.plus(judged, shown.shape[-1])
-        pull, along, told = corrected(pull, made, doubted[:, group])
-        product, information = product + along, information + told
+        beside, more = corrected(beside, made, doubted[:, group])
+        evidence = evidence.plus(more)
         others[:, group] = unclaimed(innovation, judged)
-    return tracks, pull, _Look(seen, product, information, others)
+    return tracks, beside, _Look(seen, evidence, others)
 
 
 def _doubted(model: ScanModel, nominal: Array, k: int) -> Array:

@@ -57,6 +57,8 @@ class Correction(NamedTuple):
     """H of what is used, zero elsewhere, (..., m, n)."""
     trusted: Array
     """Probability that the target's detection is among the validated, (..., m)."""
+    spread: Array
+    """Covariance of `innovation` about that share of the tracks' error, (..., m, m)."""
     gain: Array
     """K, transposed, (..., m, n)."""
 
@@ -139,7 +141,7 @@ def _moved(
         covariance=0.5 * (covariance + np.swapaxes(covariance, -2, -1)),
     )
     each = np.broadcast_to(b[..., 0], moments.mean.shape).reshape(innovation.shape)
-    return moved, Correction(innovation, total, own, stacked, each, gain)
+    return moved, Correction(innovation, total, own, stacked, each, spread, gain)
 
 
 def _stacked(h: Array) -> Array:

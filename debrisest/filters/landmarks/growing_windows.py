@@ -19,7 +19,9 @@ from debrisest.filters.runs import take
 FROM_NEAR = 1e-6
 """First damping of a window that begins at the solution of the one before it."""
 _FIRST_DAMPING, _LEAST_DAMPING, _MOST_DAMPING = 1e-3, 1e-9, 1e9
-_FEW, _PATIENCE = 5, 3
+_FEW = 5
+PATIENCE = 3
+"""How many times as many linearisations a window may take whose end is to be right."""
 _DECREASE = 0.05
 """Predicted decrease of the cost below which a window is done."""
 
@@ -63,11 +65,11 @@ def fit(
 ) -> Fit:
     """Minimise the cost over the windows in turn, at most ``iterations`` linearisations each.
 
-    The last one, from which no other will go on, may take `_PATIENCE` times as many.
+    The last one, from which no other will go on, may take `PATIENCE` times as many.
     """
     for window in windows:
         at, prior = place(model, observed, at, prior, window.last)
-        most = iterations if window is not windows[-1] else _PATIENCE * iterations
+        most = iterations if window is not windows[-1] else PATIENCE * iterations
         found = descend_on(model, observed, at, prior, window.frames, most, robust)
     return found
 

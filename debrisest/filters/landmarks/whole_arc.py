@@ -25,6 +25,7 @@ from debrisest.filters.landmarks.batch_start import (
 from debrisest.filters.landmarks.cost import FAR, Unknowns, without_far
 from debrisest.filters.landmarks.growing_windows import (
     FROM_NEAR,
+    PATIENCE,
     Fit,
     Window,
     descend_on,
@@ -37,7 +38,6 @@ from debrisest.filters.runs import put, take
 
 _GROWTH = 1.5
 _ROUNDS = 3
-_PATIENCE = 3
 _THIN = 120
 """Frames of a window that is only to find the way."""
 
@@ -169,7 +169,7 @@ def _thin(task: Problem, begun: Fit, end: int) -> Fit:
     at, prior = place(model, observed, begun.at, begun.prior, end)
     return descend_on(
         *(model, observed, at, prior, window.frames),
-        *(_PATIENCE * batch.iterations, batch.robust, FROM_NEAR),
+        *(PATIENCE * batch.iterations, batch.robust, FROM_NEAR),
     )
 
 

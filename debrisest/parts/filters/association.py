@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from debrisest.filters.association.evidence import score_sigma
+from debrisest.filters.association.restless import log_ratio
 from debrisest.filters.association.single import associated, jointly_associated
 from debrisest.filters.association.weights import Validation, inverse_unit_ball, unit_ball
 from debrisest.filters.estimates import Estimates
@@ -34,7 +35,7 @@ Probability = Annotated[float, Field(gt=0, le=1)]
 class _Validating(FilterPart):
     """Keys of the filters that have to tell the target from clutter."""
 
-    version = 4
+    version = 5
     takes = "scan_model"
     runs_together = 200
     gate: Positive = 9.21
@@ -131,7 +132,7 @@ class KnownAssociation(FilterPart):
     """The extended Kalman filter that is handed the target's own detections."""
 
     takes = "scan_model"
-    version = 2
+    version = 3
     runs_together = 200
     kind: Literal["known_association"]
     keep_s: KeptTimes = []
@@ -185,7 +186,7 @@ def _scores(model: ScanModel, found: Estimates) -> Iterator[SelfTest]:
         sigma = score_sigma(counts["square"], counts["information"]) / counts["information"]
     for i, doubt in enumerate(model.doubts):
         yield score_test(size[:, i], sigma[:, i], doubt.reason, doubt.scale)
-    yield agitation_test(size[:, -1] / sigma[:, -1])
+    yield agitation_test(log_ratio(counts["likelihood"]))
 
 
 def counting(found: Estimates, *names: str) -> Estimates:
