@@ -5,6 +5,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
+from debrisest.counted import heard_by
 from debrisest.errors import UserError
 from debrisest.files import remove_leftovers
 from debrisest.interrupts import raised
@@ -67,7 +68,7 @@ def _run(
 ) -> dict[str, str]:
     """Run what is due; return the steps that wrote no file, with reasons."""
     errors: dict[str, str] = {}
-    with executor(machine.jobs, machine.cluster) as (pool, width):
+    with heard_by(told.part), executor(machine.jobs, machine.cluster) as (pool, width):
         lacking = (not_read_back,) if machine.cluster else ()
         for outcome in execute(steps, pool, width, *lacking):
             check()

@@ -6,7 +6,6 @@ may be points that are known already.
 """
 
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -155,12 +154,3 @@ class StereoTracker:
         numbers[known[~agree]] = -1
         self.known_again += int(agree.sum())
         return numbers, now
-
-
-def follow_all(
-    tracker: StereoTracker, frames: Image, each: Callable[[int], None] = lambda _: None
-) -> None:
-    """Take all frames (time, camera, row, column); ``each`` is told the number of each."""
-    for epoch in range(len(frames)):
-        tracker.take(frames, epoch)
-        each(epoch)
