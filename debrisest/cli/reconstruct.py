@@ -161,17 +161,11 @@ def _scenario(
 
 def _run(scenario: "LoadedScenario", folder: Path, force: bool, quiet: bool) -> "Data":
     """Bring the stages up to date, in this process, and return what they found."""
-    import logging
-    import sys
-
     from debrisest.results.open import find_results
     from debrisest.results.status import up_to_date
     from debrisest.runner.plan import Selection, plan
     from debrisest.runner.sweep import Machine
 
-    if not quiet:
-        logging.basicConfig(stream=sys.stderr, format="%(message)s")
-        logging.getLogger("debrisest").setLevel(logging.INFO)
     machine = Machine(jobs=1, quiet=quiet)
     bring([scenario], folder.parent, Selection(force=force), machine, dry_run=False)
     results = up_to_date(find_results(folder), plan(scenario, folder.parent, Selection()))

@@ -32,6 +32,7 @@ def track(
     quiet: Quiet = False,
 ) -> None:
     """Follow the features of a turning body through images, and write their tracks."""
+    from debrisest.counted import heard_by
     from debrisest.errors import UserError
     from debrisest.runner.progress import progress
     from debrisest.tracks.from_images import pixel_tracks, stereo_tracks
@@ -47,15 +48,11 @@ def track(
             f"{images[0]}: a stereo pair needs its calibration: give OpenCV's YAML with --camera, "
             f"or put it there as {_CALIBRATION}"
         )
-    with progress(len(times), quiet) as teller:
-
-        def each(epoch: int) -> None:
-            teller.done(f"image {epoch}")
-
+    with progress(1, quiet) as teller, heard_by(teller.part):
         if pair and rig is not None:
-            found = stereo_tracks(sequence, rig, times, each)
+            found = stereo_tracks(sequence, rig, times)
         else:
-            found = pixel_tracks(sequence, times, each)
+            found = pixel_tracks(sequence, times)
     folder = out or RESULTS / images[0].resolve().stem
     write_long(folder / "tracks.csv", found.tracks)
     _tell(found)

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude.rotation import nearest_rotation
 from debrisest.dynamics.inertia import principal_axes
-from debrisest.vision.polyhedron import mass_properties
+from debrisest.vision.polyhedron import face_normals, mass_properties
 
 _POINTS = 4000
 _ROUNDS = 30
@@ -39,8 +39,7 @@ class Alignment(NamedTuple):
 def surface_points(vertices: Array, triangles: IntArray, count: int = _POINTS) -> Array:
     """Return points (count, 3) spread evenly, by area, over a mesh: the same ones every time."""
     corners = vertices[triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.cumsum(np.linalg.norm(normals, axis=1))
+    area = np.cumsum(np.linalg.norm(face_normals(corners), axis=1))
     steps = (np.arange(count) + 0.5) / count
     face = corners[np.searchsorted(area, steps * area[-1])]
     golden = np.outer(np.arange(1, count + 1), [0.7548776662, 0.5698402910]) % 1.0

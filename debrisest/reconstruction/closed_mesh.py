@@ -13,7 +13,7 @@ from debrisest.arrays import Array, IntArray
 from debrisest.reconstruction.crossings import crossing_pairs
 from debrisest.reconstruction.union import union
 from debrisest.reconstruction.winding import faces_on_edges, winding_number, wound_alike
-from debrisest.vision.polyhedron import mass_properties
+from debrisest.vision.polyhedron import face_normals, mass_properties
 
 _SAME = 1e-9
 """Vertices nearer than this, of the mesh's size, are one."""
@@ -164,8 +164,7 @@ def _swallowed(vertices: Array, pieces: list[IntArray]) -> set[int]:
 
 def _require_body(mesh: ClosedMesh) -> None:
     """Raise ValueError for a volume or an inertia that no body has."""
-    corners = mesh.vertices[mesh.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = face_normals(mesh.vertices[mesh.triangles])
     area = np.linalg.norm(normals, axis=1).sum() / 2.0
     found = mass_properties(mesh.vertices, mesh.triangles)
     if found.volume < _FLAT * area**1.5 / (6.0 * np.sqrt(np.pi)):

@@ -6,6 +6,7 @@ from scipy.spatial import cKDTree
 from debrisest.arrays import Array, BoolArray
 from debrisest.reconstruction.closed_mesh import ClosedMesh
 from debrisest.reconstruction.dense_cloud import OrientedCloud
+from debrisest.vision.polyhedron import face_normals
 
 _NEIGHBOURS = 8
 _ALIKE = 0.3
@@ -30,6 +31,5 @@ def share_of_area(mesh: ClosedMesh, chosen: BoolArray) -> float:
 
 def _normals(mesh: ClosedMesh) -> tuple[Array, Array]:
     """Return vectors along the triangles' normals, and their lengths: twice the areas."""
-    corners = mesh.vertices[mesh.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = face_normals(mesh.vertices[mesh.triangles])
     return normals, np.linalg.norm(normals, axis=1)

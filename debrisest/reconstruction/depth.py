@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from debrisest.arrays import Array, BoolArray
+from debrisest.counted import counted
 from debrisest.reconstruction.silhouettes import Frames
 from debrisest.reconstruction.structure import Rig, Structure
 from debrisest.reconstruction.subpixel import refined
@@ -67,7 +68,7 @@ def depth_views(
     A pair is that of the first two cameras, or where there is one, of a frame and the next.
     """
     found = []
-    for frame, (first, second) in _pairs(rig, structure):
+    for frame, (first, second) in counted(list(_pairs(rig, structure)), "depth images"):
         points = structure.points[structure.seen[frame]]
         one, other = (_view(rig, structure, *each) for each in (first, second))
         if len(points) > 3:

@@ -16,7 +16,7 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.reconstruction.closed_mesh import ClosedMesh
 from debrisest.reconstruction.depth import DepthView
-from debrisest.vision.polyhedron import MassProperties, mass_properties
+from debrisest.vision.polyhedron import MassProperties, face_normals, mass_properties
 
 TENSOR = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
 """Rows and columns of the components xx, yy, zz, xy, xz, yz."""
@@ -64,8 +64,7 @@ def error_bars(fine: ClosedMesh, coarse: ClosedMesh, doubts: Doubts) -> Array:
 
 def _outwards(mesh: ClosedMesh, distance: float) -> Array:
     """Return the vertices (vertex, 3) of a mesh moved along their normals."""
-    corners = mesh.vertices[mesh.triangles]
-    faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    faces = face_normals(mesh.vertices[mesh.triangles])
     normals = np.zeros_like(mesh.vertices)
     for corner in mesh.triangles.T:
         np.add.at(normals, corner, faces)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.counted import counted
 from debrisest.reconstruction.depth import DepthView
 from debrisest.reconstruction.normals import facing_surface
 from debrisest.reconstruction.structure import Structure
@@ -137,7 +138,7 @@ def distance_to_surfaces(points: Values, views: Sequence[DepthView], reach: floa
     than ``reach``: there each side of a panel counts as the depth of the other one.
     """
     total, weight = np.zeros((2, len(_SIDES), len(points)), dtype=np.float32)
-    for found in views:
+    for found in counted(views, "depth images fused"):
         ahead, sides = _before(points, found, reach)
         total += sides * ahead
         weight += sides

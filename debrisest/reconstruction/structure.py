@@ -7,13 +7,13 @@ structure has a scale of its own.
 
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.counted import tell
 from debrisest.reconstruction.silhouettes import Frames
 
 CAMERAS = "camera"
@@ -57,19 +57,16 @@ class Structure(NamedTuple):
         return self._replace(points=self.points[chosen], seen=self.seen[:, chosen])
 
 
-def structure_from_motion(
-    frames: Frames, masks: BoolArray, rig: Rig, folder: Path, tell: Callable[[str], None]
-) -> Structure:
+def structure_from_motion(frames: Frames, masks: BoolArray, rig: Rig, folder: Path) -> Structure:
     """Return the structure of images (time, camera, row, column) without distortion.
 
-    What is outside of ``masks`` is left out. ``folder`` keeps what is done; ``tell`` is told of
-    progress. Raises ValueError where the images do not hang together, and UserError without
-    COLMAP.
+    What is outside of ``masks`` is left out. ``folder`` keeps what is done. Raises ValueError where
+    the images do not hang together, and UserError without COLMAP.
     """
     result = folder / RESULT
     if not result.is_file():
         _prepare(frames, masks, rig, folder)
-        _run(folder, tell)
+        _run(folder)
     with np.load(result) as found:
         if "failure" in found:
             raise ValueError(str(found["failure"]))
@@ -107,8 +104,8 @@ def _prepare(frames: Frames, masks: BoolArray, rig: Rig, folder: Path) -> None:
     np.savez(folder / "rig.npz", frames=len(frames), **rig._asdict())
 
 
-def _run(folder: Path, tell: Callable[[str], None]) -> None:
-    """Run the process and pass on what it says; ValueError if it ends without a result."""
+def _run(folder: Path) -> None:
+    """Run the process and tell how far it is; ValueError if it ends without a result."""
     command = [sys.executable, "-m", "debrisest.reconstruction.structure_process", str(folder)]
     with (
         (folder / "log.txt").open("w") as log,
@@ -116,7 +113,8 @@ def _run(folder: Path, tell: Callable[[str], None]) -> None:
     ):
         try:
             for line in process.stdout or ():
-                tell(line.strip())
+                done, total, what = line.split(maxsplit=2)
+                tell(what.strip(), int(done), int(total))
         finally:
             process.kill()
     if not (folder / RESULT).is_file():

@@ -53,8 +53,8 @@ def _end_with_parent() -> None:
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)
 
 
-def _tell(text: str) -> None:
-    sys.stdout.write(f"{text}\n")
+def _tell(what: str, done: int, total: int) -> None:
+    sys.stdout.write(f"{done} {total} {what}\n")
     sys.stdout.flush()
 
 
@@ -83,7 +83,7 @@ def _features(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int) 
                 extraction,
             )
             done = camera * frames + number * _AT_ONCE + len(some)
-            _tell(f"features: {done} of {total} images")
+            _tell("images with features", done, total)
 
 
 def _known_camera(colmap: Any, database: Path, names: Sequence[str]) -> int:
@@ -127,7 +127,7 @@ def _matches(colmap: Any, folder: Path, database: Path, pairs: list[tuple[str, s
         pairing = colmap.ImportedPairingOptions(match_list_path=path)
         colmap.match_image_pairs(database, matching, pairing)
         done += len(some)
-        _tell(f"matches: {done} of {len(pairs)} pairs of images")
+        _tell("pairs of images matched", done, len(pairs))
 
 
 def _model(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int) -> Any:
@@ -145,7 +145,7 @@ def _model(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int) -> 
 
     def one_more() -> None:
         placed[0] += 1
-        _tell(f"structure: {placed[0]} steps of about {frames}")
+        _tell("images placed", min(placed[0], frames), frames)
 
     sparse = folder / "sparse"
     sparse.mkdir(exist_ok=True)

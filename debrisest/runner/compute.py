@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from debrisest.arrays import Data
+from debrisest.counted import within
 from debrisest.results import store
 from debrisest.results.image import as_stored
 from debrisest.results.trajectories import thinned
@@ -42,7 +43,8 @@ def _run(step: Step, read: Data) -> tuple[Data, float]:
     """Return what a step makes of what it reads, as its file gives it back, and CPU s per run."""
     before = process_time()
     stage, estimator = STAGES[step.address.stage], step.address.estimator
-    result = isolate(lambda data: _declared(stage.run(step.case, estimator, data)), read)
+    with within(step.name):
+        result = isolate(lambda data: _declared(stage.run(step.case, estimator, data)), read)
     times = read["time_s"] if step.upstream else step.case.clock.times
     data = as_stored({"time_s": times, **result})
     return data, (process_time() - before) / len(data["run"])

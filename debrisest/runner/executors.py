@@ -6,8 +6,11 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from multiprocessing.connection import Connection
 from typing import Any
+
+from debrisest.counted import Listener, Part, listen, listener
 
 UNGUARDED = (
     "debrisest starts worker processes, and each of them imports your script: put the lines that "
@@ -29,11 +32,14 @@ class InProcess(Executor):
 
 
 class WorkerPool(ProcessPoolExecutor):
-    """Spawned processes that leave Ctrl-C to this one, and end when it does."""
+    """Spawned processes that leave Ctrl-C to this one, tell it their parts, and end with it."""
 
     def __init__(self, jobs: int) -> None:
         spawn = multiprocessing.get_context("spawn")
-        super().__init__(jobs, mp_context=spawn, initializer=_follow_parent)
+        heard, self._told = spawn.Pipe(duplex=False)
+        given = self._told, spawn.Lock()
+        super().__init__(jobs, mp_context=spawn, initializer=_follow_parent, initargs=given)
+        threading.Thread(target=_pass_on, args=(heard, listener()), daemon=True).start()
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Submit as the pool does, starting workers with Ctrl-C blocked."""
@@ -42,6 +48,7 @@ class WorkerPool(ProcessPoolExecutor):
 
     def __exit__(self, *error: Any) -> None:
         """Wait for the workers, or end them where an error leaves the pool."""
+        self._told.close()
         if error[0] is None:
             self.shutdown()
             return
@@ -85,8 +92,21 @@ def _blocked_ctrl_c() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _follow_parent() -> None:
-    """Ignore Ctrl-C in a worker, and end it when its parent ends, however that happens."""
+def _pass_on(heard: Connection, who: Listener) -> None:
+    """Pass on what workers tell, until the last one has ended."""
+    with suppress(EOFError, OSError):
+        while True:
+            who(heard.recv())
+
+
+def _follow_parent(told: Connection, lock: Any) -> None:
+    """Ignore Ctrl-C in a worker, tell its parent of parts, and end it when that ends, anyhow."""
+
+    def send(part: Part) -> None:
+        with lock, suppress(OSError):
+            told.send(part)
+
+    listen(send)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
     assert parent is not None

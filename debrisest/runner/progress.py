@@ -7,10 +7,12 @@ from datetime import timedelta
 from time import monotonic
 from typing import TYPE_CHECKING, Protocol
 
+from debrisest.counted import Part
 from debrisest.runner.plan import Step
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
+    from rich.progress import TaskID
 
 Left = Callable[[float], float | None]
 """From the seconds that have passed to those that are left, if that is known."""
@@ -23,6 +25,9 @@ class Progress(Protocol):
 
     def started(self, steps: Sequence[Step]) -> None:
         """Tell that steps begin."""
+
+    def part(self, part: Part) -> None:
+        """Tell how far a step is."""
 
     def done(self, name: str) -> None:
         """Tell that a step is finished."""
@@ -48,7 +53,10 @@ def progress(steps: int, quiet: bool = False, left: Left | None = None) -> Itera
 
 class _Silent:
     def started(self, steps: Sequence[Step]) -> None:
-        """Tell that steps begin."""
+        """Leave out that steps begin."""
+
+    def part(self, part: Part) -> None:
+        """Leave out how far a step is."""
 
     def done(self, name: str) -> None:
         """Count a step that has ended."""
@@ -61,6 +69,14 @@ class _Silent:
 class _Lines(_Silent):
     def __init__(self, steps: int) -> None:
         self._steps, self._finished = steps, 0
+        self._told: dict[str, tuple[str, int]] = {}
+
+    def part(self, part: Part) -> None:
+        """Print a line for each tenth of a step's parts."""
+        tenth = part.what, 10 * part.done // part.total
+        if self._told.get(part.step) != tenth:
+            self._told[part.step] = tenth
+            self.say(f"  {part.step}: {part.what} {part.done} of {part.total}")
 
     def done(self, name: str) -> None:
         """Count a step that has ended."""
@@ -85,6 +101,7 @@ class _Bar:
         self._bars, self._steps, self._left = bars, steps, left
         self._task = bars.add_task("steps", total=steps, left="", now="")
         self._running: dict[str, None] = {}
+        self._parts: dict[str, tuple[str, "TaskID"]] = {}
         self._began, self._looked, self._finished = monotonic(), 0.0, 0
 
     def started(self, steps: Sequence[Step]) -> None:
@@ -92,15 +109,28 @@ class _Bar:
         self._running.update(dict.fromkeys(step.name for step in steps))
         self._show()
 
+    def part(self, part: Part) -> None:
+        """Show a bar for a step's parts of one kind."""
+        if self._parts.get(part.step, ("",))[0] != part.what:
+            self._end(part.step)
+            bar = self._bars.add_task("parts", left="", now=f"{part.step}: {part.what}")
+            self._parts[part.step] = part.what, bar
+        self._bars.update(self._parts[part.step][1], completed=part.done, total=part.total)
+
     def done(self, name: str) -> None:
         """Count a step that has ended."""
         self._finished += 1
         self._running.pop(name, None)
+        self._end(name)
         self._show()
 
     def say(self, text: str) -> None:
         """Print a line beside the progress."""
         self._bars.console.print(text, highlight=False, markup=False)
+
+    def _end(self, name: str) -> None:
+        if name in self._parts:
+            self._bars.remove_task(self._parts.pop(name)[1])
 
     def _show(self) -> None:
         first, more = next(iter(self._running), ""), len(self._running) - 1

@@ -5,6 +5,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
+from debrisest.counted import heard_by
 from debrisest.errors import UserError
 from debrisest.files import remove_leftovers
 from debrisest.interrupts import raised
@@ -72,7 +73,7 @@ def _run(
     """Run what is due; return the steps that wrote no file, with reasons."""
     errors: dict[str, str] = {}
     lacking = not_read_back if machine.cluster else trusted
-    with executor(machine.jobs, machine.cluster) as (pool, width):
+    with heard_by(told.part), executor(machine.jobs, machine.cluster) as (pool, width):
         for outcome in execute(steps, pool, width, lacking, told.started):
             check()
             pace.done(outcome.step)

@@ -1,12 +1,12 @@
 """From image sequences of calibrated cameras to tracks."""
 
 from collections import Counter
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.counted import counted
 from debrisest.errors import UserError
 from debrisest.tracks.types import Camera, Rig, Tracks
 from debrisest.tracks.write_calibration import camera_matrix
@@ -15,7 +15,7 @@ from debrisest.vision.image_files import ImageSequence
 from debrisest.vision.pixel_tracker import PixelTracker
 from debrisest.vision.refined import SHORTEST, refined
 from debrisest.vision.stereo_pair import StereoPair, rectified
-from debrisest.vision.stereo_tracker import StereoTracker, follow_all
+from debrisest.vision.stereo_tracker import StereoTracker
 
 _FEWEST = 4
 """Tracks of which a motion can be found."""
@@ -55,17 +55,15 @@ def cameras_of(rig: Rig, images: ImageSequence) -> list[PinholeImage]:
     ]
 
 
-def stereo_tracks(
-    images: ImageSequence, rig: Rig, times: Array, each: Callable[[int], None]
-) -> Tracked:
+def stereo_tracks(images: ImageSequence, rig: Rig, times: Array) -> Tracked:
     """Return points, m, in the axes of the first camera, with their sigma.
 
-    ``each`` is told the number of every frame that is done. Raises `UserError` where too little is
-    found to be followed.
+    Raises `UserError` where too little is found to be followed.
     """
     turned = rectified(*cameras_of(rig, images))
     tracker = StereoTracker(turned, seed=0)
-    follow_all(tracker, images.frames, each)
+    for number in counted(range(len(times)), "images"):
+        tracker.take(images.frames, number)
     found = refined(tracker)
     if found is None or len(found.bundle.points) < _FEWEST:
         raise UserError(_nothing(images))
@@ -85,16 +83,15 @@ def stereo_tracks(
     return Tracked(tracks, shown, left_out, tracker.known_again, found.noise_px)
 
 
-def pixel_tracks(images: ImageSequence, times: Array, each: Callable[[int], None]) -> Tracked:
+def pixel_tracks(images: ImageSequence, times: Array) -> Tracked:
     """Return pixels of one camera, as its lens shows them.
 
     Points that were lost are not known again: that takes a map of the body. Raises `UserError`
     where too little is found.
     """
     tracker = PixelTracker()
-    for epoch in range(len(times)):
+    for epoch in counted(range(len(times)), "images"):
         tracker.take(images.frames[:, 0], epoch)
-        each(epoch)
     length = np.bincount(np.concatenate([found.numbers for found in tracker.found]))
     kept = np.flatnonzero(length >= SHORTEST)
     if len(kept) < _FEWEST:

@@ -5,12 +5,12 @@ not move while most does is background.
 """
 
 from collections import Counter
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.arrays import Array, BoolArray
 from debrisest.vision.contrast import evened
+from debrisest.vision.followed import Followed, nothing
 from debrisest.vision.libraries import vision_library
 from debrisest.vision.moving import moving
 from debrisest.vision.optical_flow import (
@@ -31,44 +31,26 @@ _FEWEST = 12
 """Points that the epipolar condition is found from."""
 
 
-@dataclass
-class FollowedPixels:
-    """Points that are followed now."""
-
-    numbers: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    pixels: Array = field(default_factory=lambda: np.zeros((0, 2)))
-
-    def kept(self, which: BoolArray) -> "FollowedPixels":
-        """Return some of them."""
-        return FollowedPixels(self.numbers[which], self.pixels[which])
-
-
 class PixelTracker:
     """Takes the frames of a camera one by one, and keeps what has been found."""
 
     def __init__(self) -> None:
         self.counts, self.points = Counter[str](), 0
-        self.found: list[FollowedPixels] = []
+        self.found: list[Followed] = []
         self._before: Image | None = None
 
     def take(self, frames: Image, epoch: int) -> None:
         """Take an epoch of ``frames (time, row, column)``."""
         image = evened(frames[epoch])
-        now = FollowedPixels()
-        if self._before is not None:
-            now = self._follow(self._before, image)
+        now = nothing() if self._before is None else self._follow(self._before, image)
         free = moving(frames, epoch) & away_from(image.shape, now.pixels)
         new = corners(image, free, APART, MOST - len(now.numbers))
         numbers = np.arange(self.points, self.points + len(new))
         self.points += len(new)
         self._before = image
-        self.found.append(
-            FollowedPixels(
-                np.concatenate([now.numbers, numbers]), np.concatenate([now.pixels, new])
-            )
-        )
+        self.found.append(now.and_more(numbers, new))
 
-    def _follow(self, before: Image, image: Image) -> FollowedPixels:
+    def _follow(self, before: Image, image: Image) -> Followed:
         last = self.found[-1]
         there, found = followed(before, image, last.pixels, last.pixels, FORWARD_BACKWARD)
         self.counts["lost by optical flow"] += int((~found).sum())
@@ -77,7 +59,7 @@ class PixelTracker:
         moves = found & ~still
         moves[moves] = _on_epipolar_lines(last.pixels[moves], there[moves])
         self.counts["not rigid with the others"] += int((found & ~still & ~moves).sum())
-        return FollowedPixels(last.numbers, there).kept(moves)
+        return Followed(last.numbers, there).kept(moves)
 
 
 def _on_epipolar_lines(before: Array, after: Array) -> BoolArray:

@@ -1,4 +1,4 @@
-"""Mass properties of closed triangle meshes, by sums over tetrahedra.
+"""Faces and mass properties of triangle meshes, the latter by sums over tetrahedra.
 
 Source: the divergence theorem; second moments of a tetrahedron as in Tonon 2004.
 """
@@ -19,6 +19,12 @@ class MassProperties(NamedTuple):
     """Centre of mass (3,), m."""
     inertia: Array
     """Tensor (3, 3) about the centre of mass, m5."""
+
+
+def face_normals(corners: Array) -> Array:
+    """Return vectors along the outward normals of triangles (..., 3, 3), twice their areas long."""
+    first, second, third = np.moveaxis(corners, -2, 0)
+    return np.cross(second - first, third - first)
 
 
 def mass_properties(vertices: Array, triangles: IntArray) -> MassProperties:

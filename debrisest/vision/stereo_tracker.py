@@ -6,14 +6,13 @@ may be points that are known already.
 """
 
 from collections import Counter
-from collections.abc import Callable
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.vision.body_map import BodyMap
 from debrisest.vision.contrast import evened
+from debrisest.vision.followed import Followed, nothing
 from debrisest.vision.moving import moving
 from debrisest.vision.optical_flow import (
     APART,
@@ -38,24 +37,6 @@ _AGREE = 6
 """Points known again that must agree on a pose for it to be taken."""
 
 
-@dataclass
-class Followed:
-    """Points that are followed now: their numbers (n,) and pixels (n, camera, 2), rectified."""
-
-    numbers: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    pixels: Array = field(default_factory=lambda: np.zeros((0, 2, 2)))
-
-    def kept(self, which: BoolArray) -> "Followed":
-        """Return some of them."""
-        return Followed(self.numbers[which], self.pixels[which])
-
-    def and_more(self, numbers: IntArray, pixels: Array) -> "Followed":
-        """Return them and others."""
-        return Followed(
-            np.concatenate([self.numbers, numbers]), np.concatenate([self.pixels, pixels])
-        )
-
-
 class StereoTracker:
     """Takes the frames of a pair one by one, and keeps what has been found."""
 
@@ -68,10 +49,13 @@ class StereoTracker:
         self.images: list[list[Image]] = []
 
     def take(self, frames: Image, epoch: int) -> Followed:
-        """Return what is found in an epoch of ``frames (time, camera, row, column)``."""
+        """Return what is found in an epoch of ``frames (time, camera, row, column)``.
+
+        Pixels are rectified.
+        """
         images = [evened(image) for image in self._rectified.images(frames[epoch])]
         changes = nearest(moving(frames[:, 0], epoch), self._rectified.maps[0])
-        now = self._follow(images) if self.images else Followed()
+        now = self._follow(images) if self.images else nothing(2)
         now = self._renew(images, now, changes)
         self.images.append(images)
         self.found.append(now)
@@ -155,12 +139,3 @@ class StereoTracker:
         numbers[known[~agree]] = -1
         self.known_again += int(agree.sum())
         return numbers, now
-
-
-def follow_all(
-    tracker: StereoTracker, frames: Image, each: Callable[[int], None] = lambda _: None
-) -> None:
-    """Take all frames (time, camera, row, column); ``each`` is told the number of each."""
-    for epoch in range(len(frames)):
-        tracker.take(frames, epoch)
-        each(epoch)

@@ -6,6 +6,7 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.vision.libraries import vision_library
+from debrisest.vision.polyhedron import face_normals
 from debrisest.vision.solids import Solid
 from debrisest.vision.texture import SolidNoise
 
@@ -30,7 +31,7 @@ class Surface:
 
     def __init__(self, solid: Solid, texture: SolidNoise) -> None:
         corners = solid.vertices[solid.triangles]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals = face_normals(corners)
         self.radius = float(np.linalg.norm(solid.vertices, axis=-1).max())
         self._normals = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
         self._corners, self._albedo, self._texture = corners[:, 0], solid.albedo, texture

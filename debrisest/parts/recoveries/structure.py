@@ -1,6 +1,5 @@
 """Structure from motion: where images of a turning body were taken, and points of its surface."""
 
-import logging
 import os
 import shutil
 from hashlib import sha256
@@ -16,7 +15,6 @@ from debrisest.reconstruction.silhouettes import Frames
 from debrisest.reconstruction.structure import Rig, Structure, structure_from_motion
 from debrisest.roles import RecoveryPart
 
-_LOG = logging.getLogger(__name__)
 _SCALED = "the baseline of the cameras gives the scale"
 _UNSCALED = "one camera gives no scale: only ratios are told, unless a length is known"
 
@@ -70,7 +68,7 @@ def padded(values: Array, length: int) -> Array:
 def _structure(data: Data, run: int) -> Structure:
     frames, masks, rig = seen(data, run)
     folder = _folder(frames, rig)
-    found = structure_from_motion(frames, masks, rig, folder, _LOG.info)
+    found = structure_from_motion(frames, masks, rig, folder)
     shutil.rmtree(folder, ignore_errors=True)
     return found
 

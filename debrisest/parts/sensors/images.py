@@ -11,6 +11,7 @@ from pydantic import Field
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
+from debrisest.counted import counted
 from debrisest.draws import Draws, Stream
 from debrisest.roles import NonNegative, Positive, SimulationPart, Vector3
 from debrisest.vision.camera import PinholeImage
@@ -72,7 +73,8 @@ class Images(SimulationPart):
         cameras = self._cameras()
         runs = [list(self._renderers(data, run, cameras)) for run in range(len(draws.runs))]
         frames = [
-            self._frame(data, runs, cameras, epoch, draws) for epoch in range(len(clock.times))
+            self._frame(data, runs, cameras, epoch, draws)
+            for epoch in counted(range(len(clock.times)), "images rendered")
         ]
         known = {
             "camera_matrix": [camera.matrix for camera in cameras],

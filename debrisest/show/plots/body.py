@@ -10,6 +10,7 @@ from debrisest.arrays import Array, Data
 from debrisest.show.plots.axes import heading
 from debrisest.show.plots.space import same_scale, spatial_axes
 from debrisest.show.plots.style import BLUE, GREY, INK, VERMILION, WIDTH, styled
+from debrisest.vision.polyhedron import face_normals
 
 CLOUD = ("cloud_point_r", "cloud_seen")
 MESH = ("vertex_r", "triangle_r", "triangle_seen", "principal_axes_r")
@@ -74,7 +75,7 @@ def _corners(data: Data) -> Array:
 
 def _shade(axes: Any, corners: Array, colours: Array) -> None:
     """Add triangles (triangle, 3, 3) in light from one side."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = face_normals(corners)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
     light = 0.55 + 0.45 * (normals @ (_SUN / np.linalg.norm(_SUN)))
     faces = np.clip(colours * light[:, None], 0.0, 1.0)
