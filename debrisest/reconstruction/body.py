@@ -83,7 +83,7 @@ def reconstructed_body(
                 f"the structure does not agree with the silhouettes, which hold {held.mean():.0%} "
                 "of its points: images were placed wrongly; take more of them, or larger ones"
             )
-        by_cloud, held = True, main_part(structure.points)
+        by_cloud, held = True, main_part(structure)
         drawn = outlines(structure.of(held), rig.matrix[0], masks.shape[2:])
         masks = np.repeat(drawn[:, None], masks.shape[1], axis=1)
         outer = outer._replace(masks=drawn)

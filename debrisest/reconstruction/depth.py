@@ -22,6 +22,9 @@ _MARGIN_PX = 16
 _WIDEST, _USUAL, _NARROWEST = np.radians([25.0, 8.0, 2.0])
 """Between the lines of sight of two times of one camera."""
 
+_LARGEST = 4
+"""Times the pixels of an image that a turned one may have."""
+
 Depth = NDArray[np.float32]
 
 
@@ -70,10 +73,9 @@ def depth_views(
     for frame, (first, second) in _pairs(rig, structure):
         points = structure.points[structure.seen[frame]]
         one, other = (_view(rig, structure, *each) for each in (first, second))
-        if len(points) > 3:
-            found.append(
-                _Rectified(one, other, points).depth((frames[first], frames[second]), masks[first])
-            )
+        pair = _Rectified(one, other, points) if len(points) > 3 else None
+        if pair is not None and pair.pixels < _LARGEST * frames[first].size:
+            found.append(pair.depth((frames[first], frames[second]), masks[first]))
     return found
 
 
@@ -142,6 +144,11 @@ class _Rectified:
             )
             for view, turned, matrix in zip((one, other), (turn, second), self._matrix)
         ]
+
+    @property
+    def pixels(self) -> int:
+        """Return how many pixels the turned images have: too many for points that are misplaced."""
+        return self._size[0] * self._size[1]
 
     def depth(self, pair: tuple[Frames, Frames], mask: BoolArray) -> DepthView:
         """Return the depth from the first view, in the silhouette (row, column)."""

@@ -12,15 +12,25 @@ from debrisest.arrays import Array, BoolArray
 from debrisest.reconstruction.structure import Structure
 from debrisest.vision.libraries import vision_library
 
-_NEIGHBOURS = 6
-_APART = 4.0
+_LEAST_IMAGES, _FEWEST = 3, 20
+_NEIGHBOURS = 3
+_APART = 2.0
 """Of the usual distance to the last of the neighbours; points farther apart hang not together."""
 
 
-def main_part(points: Array) -> BoolArray:
-    """Return which points (point, 3) belong to the largest part that hangs together."""
-    if len(points) <= _NEIGHBOURS:
-        return np.ones(len(points), dtype=np.bool_)
+def main_part(structure: Structure) -> BoolArray:
+    """Return which points (point,) belong to the largest part that hangs together.
+
+    Points that fewer than three images see do not count. Raises ValueError where few are left.
+    """
+    kept = structure.seen.sum(axis=0) >= _LEAST_IMAGES
+    if kept.sum() < _FEWEST:
+        raise ValueError(f"the cloud has {kept.sum()} points that three images see: too few")
+    kept[kept] = _hanging_together(structure.points[kept])
+    return kept
+
+
+def _hanging_together(points: Array) -> BoolArray:
     tree = cKDTree(points)
     distance, _ = tree.query(points, k=[_NEIGHBOURS + 1])
     usual = np.median(distance)
