@@ -23,7 +23,7 @@ def main_part(structure: Structure) -> BoolArray:
 
     Points that fewer than three images see do not count. Raises ValueError where few are left.
     """
-    kept = structure.seen.sum(axis=0) >= _LEAST_IMAGES
+    kept: BoolArray = np.asarray(structure.seen.sum(axis=0) >= _LEAST_IMAGES)
     if kept.sum() < _FEWEST:
         raise ValueError(f"the cloud has {kept.sum()} points that three images see: too few")
     kept[kept] = _hanging_together(structure.points[kept])

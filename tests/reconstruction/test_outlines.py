@@ -22,7 +22,8 @@ def structure(points, seen=3):
 
 def test_points_far_from_the_others_are_not_the_body():
     rng = np.random.default_rng(1)
-    body, hand = rng.uniform(-1, 1, (300, 3)), rng.uniform(-1, 1, (100, 3)) + [6.0, 0.0, 0.0]
+    body, hand = rng.uniform(-1, 1, (300, 3)), rng.uniform(-1, 1, (100, 3))
+    hand[:, 0] += 6.0
     found = main_part(structure(np.concatenate([body, hand])))
     assert found[:300].mean() > 0.95
     assert not found[300:].any()
