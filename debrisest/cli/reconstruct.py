@@ -40,6 +40,13 @@ def reconstruct(
     known_length_sigma_m: Annotated[
         float, Option("--known-length-sigma-m", help="Its 1-sigma.")
     ] = 0.0,
+    field_of_view_deg: Annotated[
+        float | None,
+        Option("--field-of-view-deg", help="Across the longer side, where nothing is calibrated."),
+    ] = None,
+    widest_px: Annotated[
+        int, Option("--widest-px", min=64, help="Reduce images with more columns to so many.")
+    ] = 1280,
     every: Annotated[int, Option("--every", min=1, help="Take one image of so many.")] = 1,
     reference: Annotated[
         Path | None, Option("--reference", help="A CAD mesh to lay the body onto, and to compare.")
@@ -73,7 +80,8 @@ def reconstruct(
             "known_length_sigma_m": known_length_sigma_m,
         }
     folder = out or RESULTS / given.resolve().stem
-    text = _scenario(given, camera, every, problem, folder)
+    keys = {"every": every, "field_of_view_deg": field_of_view_deg, "widest_px": widest_px}
+    text = _scenario(given, camera, keys, problem, folder)
     config = write_new(folder / f"{folder.name}.yaml", text, force)
     (scenario,) = load_all([config], None, None)
     data = _run(scenario, folder, force, quiet)
@@ -124,7 +132,7 @@ def _compare(data: "Data", reference: Path | None) -> None:
 
 
 def _scenario(
-    images: Path, camera: Path | None, every: int, problem: dict[str, Any], folder: Path
+    images: Path, camera: Path | None, keys: dict[str, Any], problem: dict[str, Any], folder: Path
 ) -> str:
     """Return a scenario for ``folder`` as YAML."""
     import yaml
@@ -135,24 +143,18 @@ def _scenario(
     calibration = camera or next((path for path in there if path.is_file()), None)
     if not images.exists():
         raise UserError(f"{images}: no such folder or file")
-    if calibration is None:
-        raise UserError(
-            f"{images}: the calibration of the camera is missing: give OpenCV's YAML with "
-            f"--camera, or put it there as {_CALIBRATION}"
-        )
-    measured = {
-        "kind": "image_files",
-        "folder": relative_to(folder, str(images)),
-        "camera": relative_to(folder, str(calibration)),
-    }
+    measured = {"kind": "image_files", "folder": relative_to(folder, str(images))}
+    measured |= {key: value for key, value in keys.items() if value is not None}
+    if calibration is not None:
+        measured["camera"] = relative_to(folder, str(calibration))
     scenario = {
         "title": f"Shape of the body in {images.name}",
-        "measured": measured | ({"every": every} if every > 1 else {}),
+        "measured": measured,
         "estimators": {
             "shape": {
-                "recovery": {"kind": "structure_from_motion"},
+                "recovery": {"kind": "structure_from_motion", "leave_out": "still_features"},
                 "problem": {"kind": "constant_density_shape", **problem},
-                "filter": {"kind": "surface"},
+                "filter": {"kind": "surface", "outline": "either"},
             }
         },
     }

@@ -17,6 +17,7 @@ from debrisest.reconstruction.coverage import share_of_area, triangles_seen
 from debrisest.reconstruction.dense_cloud import OrientedCloud, dense_cloud
 from debrisest.reconstruction.depth import DepthView, depth_views
 from debrisest.reconstruction.error_bars import Doubts, depth_sigma, error_bars
+from debrisest.reconstruction.outlines import main_part, outlines
 from debrisest.reconstruction.poisson import poisson_mesh
 from debrisest.reconstruction.silhouettes import Frames
 from debrisest.reconstruction.structure import Rig, Structure
@@ -24,6 +25,7 @@ from debrisest.reconstruction.winding import pieces_of
 from debrisest.vision.polyhedron import MassProperties, mass_properties
 
 Method = Literal["poisson", "fusion"]
+Outline = Literal["silhouettes", "either"]
 LEAST_COVERAGE = 0.8
 """Of the surface, below which no number is given."""
 _CELLS = (120, 200)
@@ -55,6 +57,8 @@ class Body(NamedTuple):
     """Of the convex hull, for a cross-check: the volume is no larger."""
     silhouette_volume: float
     """Of what all silhouettes share: the volume is no larger, but for their errors."""
+    by_cloud: bool
+    """Whether the outlines of the cloud took the place of silhouettes."""
 
 
 def reconstructed_body(
@@ -64,6 +68,7 @@ def reconstructed_body(
     structure: Structure,
     method: Method = "fusion",
     known_length: tuple[float, float] | None = None,
+    outline: Outline = "silhouettes",
 ) -> Body:
     """Return the body in images (time, camera, row, column) without distortion.
 
@@ -71,12 +76,17 @@ def reconstructed_body(
     replaces the scale of the structure. Raises ValueError where no closed surface comes out.
     """
     outer = _Outer(masks[:, 0], rig.matrix[0], structure)
-    held = outer.holds(structure.points)
+    held, by_cloud = outer.holds(structure.points), False
     if held.mean() < _AGREED:
-        raise ValueError(
-            f"the structure does not agree with the silhouettes, which hold {held.mean():.0%} of "
-            "its points: images were placed wrongly; take more of them, or larger ones"
-        )
+        if outline == "silhouettes":
+            raise ValueError(
+                f"the structure does not agree with the silhouettes, which hold {held.mean():.0%} "
+                "of its points: images were placed wrongly; take more of them, or larger ones"
+            )
+        by_cloud, held = True, main_part(structure)
+        drawn = outlines(structure.of(held), rig.matrix[0], masks.shape[2:])
+        masks = np.repeat(drawn[:, None], masks.shape[1], axis=1)
+        outer = outer._replace(masks=drawn)
     structure = structure.of(held)
     outer = outer._replace(structure=structure)
     views = depth_views(frames, masks, rig, structure)
@@ -99,6 +109,7 @@ def reconstructed_body(
         seen=coverage,
         hull_volume=factor**3 * _hull_volume(cloud.points),
         silhouette_volume=factor**3 * outer.volume(extent / _HULL_CELLS),
+        by_cloud=by_cloud,
     )
 
 

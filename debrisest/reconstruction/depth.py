@@ -20,8 +20,11 @@ from debrisest.vision.libraries import vision_library
 
 _BLOCK = 5
 _MARGIN_PX = 16
-_WIDEST, _NARROWEST = np.radians(25.0), np.radians(2.0)
+_WIDEST, _USUAL, _NARROWEST = np.radians([25.0, 8.0, 2.0])
 """Between the lines of sight of two times of one camera."""
+
+_LARGEST = 4
+"""Times the pixels of an image that a turned one may have."""
 
 Depth = NDArray[np.float32]
 
@@ -71,10 +74,9 @@ def depth_views(
     for frame, (first, second) in counted(list(_pairs(rig, structure)), "depth images"):
         points = structure.points[structure.seen[frame]]
         one, other = (_view(rig, structure, *each) for each in (first, second))
-        if len(points) > 3:
-            found.append(
-                _Rectified(one, other, points).depth((frames[first], frames[second]), masks[first])
-            )
+        pair = _Rectified(one, other, points) if len(points) > 3 else None
+        if pair is not None and pair.pixels < _LARGEST * frames[first].size:
+            found.append(pair.depth((frames[first], frames[second]), masks[first]))
     return found
 
 
@@ -87,11 +89,18 @@ def _pairs(rig: Rig, structure: Structure) -> Iterator[tuple[int, tuple[_At, _At
     if len(rig.matrix) > 1:
         yield from ((int(frame), ((int(frame), 0), (int(frame), 1))) for frame in frames)
         return
-    for one, other in zip(frames.tolist(), frames[1:].tolist()):
-        turn = structure.rotation[one] @ structure.rotation[other].T
-        angle = np.arccos(np.clip((np.trace(turn) - 1.0) / 2.0, -1.0, 1.0))
-        if _NARROWEST < angle < _WIDEST:
-            yield one, ((one, 0), (other, 0))
+    for place, one in enumerate(frames.tolist()):
+        turned = structure.rotation[one] @ structure.rotation[frames].swapaxes(1, 2)
+        trace = np.trace(turned, axis1=1, axis2=2)
+        angle = np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))
+        good = (angle > _NARROWEST) & (angle < _WIDEST)
+        if good[place + 1 : place + 2].any():
+            other = place + 1
+        elif structure.lens.focal_spread > 0.0 and good.any():
+            other = int(np.where(good, np.abs(angle - _USUAL), np.inf).argmin())
+        else:
+            continue
+        yield one, ((one, 0), (int(frames[other]), 0))
 
 
 def _view(rig: Rig, structure: Structure, frame: int, camera: int) -> View:
@@ -136,6 +145,11 @@ class _Rectified:
             )
             for view, turned, matrix in zip((one, other), (turn, second), self._matrix)
         ]
+
+    @property
+    def pixels(self) -> int:
+        """Return how many pixels the turned images have: too many for points that are misplaced."""
+        return self._size[0] * self._size[1]
 
     def depth(self, pair: tuple[Frames, Frames], mask: BoolArray) -> DepthView:
         """Return the depth from the first view, in the silhouette (row, column)."""

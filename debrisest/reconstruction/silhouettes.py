@@ -1,4 +1,8 @@
-"""Silhouettes of a turning body: before black sky by brightness, before a room by motion."""
+"""Silhouettes of a turning body: before black sky by brightness, before a room by motion.
+
+On a turntable some pixels show the body in most images, so that motion takes it for background:
+where the edges of the images show a plain backdrop, its levels count there.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +17,8 @@ _DARK_GREY = 12.0
 """Skies are darker than this in most of the border's pixels."""
 _BACKGROUND_SHARE = 0.25
 """Of the frames in which a pixel has to show the same, for that to be the background."""
+_EDGE_SHARE, _PLAIN_SHARE, _PLAIN_GREY = 0.1, 0.95, 5.0
+"""A backdrop is plain whose levels are smooth to this many in this share of the images' edges."""
 _BORDER_PX = 4
 _EDGE_PX = 3
 _BRIGHT_GREY = 60.0
@@ -37,6 +43,7 @@ def _of_camera(frames: Frames) -> BoolArray:
         contrast, level = smooth - float(np.median(border)), _threshold(border)
     else:
         background, sigma = _background(smooth)
+        background = _corrected(background, _backdrop(smooth))
         contrast, level = np.abs(smooth - background), max(_SIGMAS * sigma, _LEAST_GREY)
     masks = np.stack([_sharp(_largest(each > level), each) for each in contrast])
     if not masks.any():
@@ -70,6 +77,29 @@ def _background(smooth: NDArray[np.float32]) -> tuple[Array, float]:
     sigma = float(np.median(np.abs(smooth - level)[:, :_BORDER_PX])) * 1.4826
     always_body = narrow > 4.0 * max(usual, sigma)
     return np.where(always_body, -1e3, level).astype(np.float64), sigma
+
+
+def _backdrop(smooth: NDArray[np.float32]) -> Array | None:
+    """Return the levels (row, column) of a plain backdrop, None where what is behind has details.
+
+    A quadratic of row and column through what the edges of the images show.
+    """
+    usual = np.median(smooth, axis=0).astype(np.float64)
+    rows, columns = usual.shape
+    v, u = np.meshgrid(np.linspace(-1, 1, rows), np.linspace(-1, 1, columns), indexing="ij")
+    terms = np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=-1)
+    edge = np.maximum(np.abs(u), np.abs(v)) > 1.0 - _EDGE_SHARE
+    fitted = np.linalg.lstsq(terms[edge], usual[edge], rcond=None)[0]
+    off = np.abs(terms[edge] @ fitted - usual[edge])
+    return terms @ fitted if np.quantile(off, _PLAIN_SHARE) < _PLAIN_GREY else None
+
+
+def _corrected(background: Array, backdrop: Array | None) -> Array:
+    """Return the background, with the backdrop's levels where it shows the body all the time."""
+    if backdrop is None:
+        return background
+    own = np.abs(background - backdrop) < 2.0 * _PLAIN_GREY
+    return np.where(own, background, backdrop)
 
 
 def _sharp(mask: BoolArray, contrast: Array) -> BoolArray:

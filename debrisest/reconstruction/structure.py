@@ -31,6 +31,29 @@ class Rig(NamedTuple):
     """Origin of the first camera in a camera's axes (camera, 3), m."""
 
 
+class Lens(NamedTuple):
+    """Of a camera; distortion is what its images have beyond that of a pinhole camera."""
+
+    matrix: Array
+    """Camera matrix (3, 3), px."""
+    distortion: Array
+    """OpenCV's k1, k2, p1, p2, k3 (5,)."""
+    focal_spread: float = 0.0
+    """1-sigma of the focal length, of it; zero where it was given."""
+
+
+class How(NamedTuple):
+    """What is done beyond what a calibrated camera with silhouettes needs."""
+
+    calibrate: bool = False
+    """Whether the focal length of the one camera follows from the images."""
+    leave_out_still: bool = False
+    """Whether features that stand still are left out, in the place of those off silhouettes."""
+
+
+AS_GIVEN = How()
+
+
 class Structure(NamedTuple):
     """Poses of the first camera about the body, and points, in axes r of their own."""
 
@@ -46,6 +69,8 @@ class Structure(NamedTuple):
     """1-sigma of the scale, of it; infinite where nothing gives the scale."""
     reprojection_px: float
     """Mean distance of what is seen from where it should be."""
+    lens: Lens
+    """The first camera's, as it was given or as the images tell it."""
 
     @property
     def registered(self) -> IntArray:
@@ -57,7 +82,9 @@ class Structure(NamedTuple):
         return self._replace(points=self.points[chosen], seen=self.seen[:, chosen])
 
 
-def structure_from_motion(frames: Frames, masks: BoolArray, rig: Rig, folder: Path) -> Structure:
+def structure_from_motion(
+    frames: Frames, masks: BoolArray, rig: Rig, folder: Path, how: How = AS_GIVEN
+) -> Structure:
     """Return the structure of images (time, camera, row, column) without distortion.
 
     What is outside of ``masks`` is left out. ``folder`` keeps what is done. Raises ValueError where
@@ -65,14 +92,19 @@ def structure_from_motion(frames: Frames, masks: BoolArray, rig: Rig, folder: Pa
     """
     result = folder / RESULT
     if not result.is_file():
-        _prepare(frames, masks, rig, folder)
+        _prepare(frames, masks, rig, folder, how)
         _run(folder)
     with np.load(result) as found:
         if "failure" in found:
             raise ValueError(str(found["failure"]))
         return Structure(
-            *(found[name] for name in ("rotation", "translation", "points", "seen")),
-            *(float(found[name]) for name in ("scale_sigma", "reprojection_px")),
+            rotation=found["rotation"],
+            translation=found["translation"],
+            points=found["points"],
+            seen=found["seen"],
+            scale_sigma=float(found["scale_sigma"]),
+            reprojection_px=float(found["reprojection_px"]),
+            lens=Lens(found["matrix"], found["distortion"], float(found["focal_spread"])),
         )
 
 
@@ -81,7 +113,7 @@ def image_name(camera: int, frame: int) -> str:
     return f"{CAMERAS}{camera}/{frame:06d}.png"
 
 
-def _prepare(frames: Frames, masks: BoolArray, rig: Rig, folder: Path) -> None:
+def _prepare(frames: Frames, masks: BoolArray, rig: Rig, folder: Path, how: How = AS_GIVEN) -> None:
     """Write what the process reads, unless it is there."""
     from debrisest.files import put
     from debrisest.vision.libraries import vision_library
@@ -101,7 +133,7 @@ def _prepare(frames: Frames, masks: BoolArray, rig: Rig, folder: Path) -> None:
             ):
                 if not path.is_file():
                     put(path, cv2.imencode(".png", image)[1].tobytes())
-    np.savez(folder / "rig.npz", frames=len(frames), **rig._asdict())
+    np.savez(folder / "rig.npz", frames=len(frames), **rig._asdict(), **how._asdict())
 
 
 def _run(folder: Path) -> None:

@@ -14,7 +14,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from debrisest.reconstruction.structure import CAMERAS, RESULT, Rig, image_name
+from debrisest.arrays import Array
+from debrisest.reconstruction.self_calibration import lens_of
+from debrisest.reconstruction.structure import CAMERAS, RESULT, How, Lens, Rig, image_name
 from debrisest.vision.libraries import vision_library
 
 _Item = TypeVar("_Item")
@@ -24,6 +26,10 @@ _PEAK = 0.003
 _NEXT_FRAMES = 4
 _LOOP = 3
 """Each frame of this many is matched with all others of them."""
+_ALL_PAIRS = 60
+_STILL_PX, _OFF_PX = 2.0, 2.0
+"""Where features that stand still are left out: what that is, and how far features may be off."""
+_PLACINGS, _SETTLED = 4, 0.02
 _LEAST_SHARE = 0.5
 """Of the frames that have to find a place in one model."""
 
@@ -37,11 +43,12 @@ def main(folder: Path) -> None:
     with np.load(folder / "rig.npz") as kept:
         rig = Rig(kept["matrix"], kept["rotation"], kept["translation"])
         frames = int(kept["frames"])
+        how = How(bool(kept["calibrate"]), bool(kept["leave_out_still"]))
     database = folder / "database.db"
-    _features(colmap, folder, database, rig, frames)
-    _matches(colmap, folder, database, _pairs(len(rig.matrix), frames))
-    model = _model(colmap, folder, database, rig, frames)
-    result = _result(model, rig, frames)
+    _features(colmap, folder, database, rig, frames, how)
+    _matches(colmap, folder, database, _pairs(len(rig.matrix), frames, how), how)
+    model, lens = _model_and_lens(colmap, folder, database, rig, frames, how)
+    result = _result(model, lens, rig, frames)
     partial = folder / f"partial-{RESULT}"
     np.savez(partial, **result)
     os.replace(partial, folder / RESULT)
@@ -58,7 +65,7 @@ def _tell(what: str, done: int, total: int) -> None:
     sys.stdout.flush()
 
 
-def _features(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int) -> None:
+def _features(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int, how: How) -> None:
     """Detect features in each camera's images, all with the camera's own matrix."""
     total = frames * len(rig.matrix)
     extraction = colmap.FeatureExtractionOptions(num_threads=_threads(), use_gpu=False)
@@ -69,11 +76,10 @@ def _features(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int) 
         names = [image_name(camera, frame) for frame in range(frames)]
         for number, some in enumerate(_portions(names, _AT_ONCE)):
             reader = colmap.ImageReaderOptions(
-                camera_model="PINHOLE",
-                camera_params=f"{k[0, 0]},{k[1, 1]},{k[0, 2] + 0.5},{k[1, 2] + 0.5}",
-                mask_path=folder / "masks",
-                existing_camera_id=_known_camera(colmap, database, names),
+                existing_camera_id=_known_camera(colmap, database, names), **_lens(k, how)
             )
+            if not how.leave_out_still:
+                reader.mask_path = folder / "masks"
             colmap.extract_features(
                 database,
                 folder / "images",
@@ -86,6 +92,22 @@ def _features(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int) 
             _tell("images with features", done, total)
 
 
+def _lens(k: Array, how: How) -> dict[str, str]:
+    """Return the kind of a camera and its numbers, as COLMAP has them."""
+    middle = f"{k[0, 2] + 0.5},{k[1, 2] + 0.5}"
+    if how.calibrate:
+        return {"camera_model": "SIMPLE_PINHOLE", "camera_params": f"{k[0, 0]},{middle}"}
+    return {"camera_model": "PINHOLE", "camera_params": f"{k[0, 0]},{k[1, 1]},{middle}"}
+
+
+def _start_from(colmap: Any, database: Path, lens: Lens) -> None:
+    """Let the next model begin with a focal length."""
+    with colmap.Database.open(database) as opened:
+        (camera,) = opened.read_all_cameras()
+        camera.params = [lens.matrix[0, 0], *camera.params[1:]]
+        opened.update_camera(camera)
+
+
 def _known_camera(colmap: Any, database: Path, names: Sequence[str]) -> int:
     """Return the number of the camera that took images, -1 where none of them is there yet."""
     if not database.is_file():
@@ -95,8 +117,13 @@ def _known_camera(colmap: Any, database: Path, names: Sequence[str]) -> int:
     return next((there[name] for name in names if name in there), -1)
 
 
-def _pairs(cameras: int, frames: int) -> list[tuple[str, str]]:
-    """Return pairs of images to match: one time, following times, sparse loops."""
+def _pairs(cameras: int, frames: int, how: How) -> list[tuple[str, str]]:
+    """Return pairs of images to match: one time, following times, sparse loops.
+
+    All, where it is not known that images are in the order of the turn, and they are not many.
+    """
+    if how.leave_out_still and cameras == 1 and frames <= _ALL_PAIRS:
+        return [(image_name(0, a), image_name(0, b)) for a in range(frames) for b in range(a)]
     pairs = [
         (image_name(0, frame), image_name(camera, frame))
         for frame in range(frames)
@@ -118,26 +145,68 @@ def _pairs(cameras: int, frames: int) -> list[tuple[str, str]]:
     return pairs
 
 
-def _matches(colmap: Any, folder: Path, database: Path, pairs: list[tuple[str, str]]) -> None:
+def _matches(
+    colmap: Any, folder: Path, database: Path, pairs: list[tuple[str, str]], how: How
+) -> None:
+    verification = colmap.TwoViewGeometryOptions()
+    if how.leave_out_still:
+        verification.filter_stationary_matches = True
+        verification.stationary_matches_max_error = _STILL_PX
+        verification.ransac.max_error = _OFF_PX
+        verification.ransac.random_seed = 1
     matching = colmap.FeatureMatchingOptions(num_threads=_threads(), use_gpu=False)
     done = 0
     for some in _portions(pairs, 5 * _AT_ONCE):
         path = folder / "pairs.txt"
         path.write_text("".join(f"{one} {other}\n" for one, other in some))
         pairing = colmap.ImportedPairingOptions(match_list_path=path)
-        colmap.match_image_pairs(database, matching, pairing)
+        colmap.match_image_pairs(database, matching, pairing, verification)
         done += len(some)
         _tell("pairs of images matched", done, len(pairs))
 
 
-def _model(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int) -> Any:
+def _model_and_lens(
+    colmap: Any, folder: Path, database: Path, rig: Rig, frames: int, how: How
+) -> tuple[Any, Lens]:
+    """Return the largest model, None where there is none, and the lens that was given or found.
+
+    A focal length that is far off makes images hang together wrongly: all are placed again with the
+    one that was found, until it stays. Its spread counts how much it changed.
+    """
+    model = _model(colmap, folder, database, rig, frames, how)
+    lens = Lens(rig.matrix[0], np.zeros(5))
+    told: list[float] = []
+    while how.calibrate and model is not None:
+        lens = lens_of(colmap, model)
+        told.append(float(lens.matrix[0, 0]))
+        _tell("placings of the images", len(told), _PLACINGS)
+        settled = len(told) > 1 and np.ptp(told[-2:]) < _SETTLED * told[-1]
+        if settled or len(told) == _PLACINGS:
+            break
+        _start_from(colmap, database, lens)
+        model = _model(colmap, folder, database, rig, frames, how) or model
+    return model, lens._replace(focal_spread=float(np.hypot(lens.focal_spread, _scatter(told))))
+
+
+def _scatter(values: list[float]) -> float:
+    """Return the standard deviation of values, of the last one."""
+    return float(np.std(values, ddof=1) / values[-1]) if len(values) > 1 else 0.0
+
+
+def _model(colmap: Any, folder: Path, database: Path, rig: Rig, frames: int, how: How) -> Any:
     """Return the largest model; None where too few frames hang together."""
     if len(rig.matrix) > 1:
         with colmap.Database.open(database) as opened:
             colmap.apply_rig_config([_rig_config(colmap, rig)], opened)
     options = colmap.IncrementalPipelineOptions(num_threads=_threads(), random_seed=1)
     options.mapper.random_seed = options.triangulation.random_seed = 1
-    options.ba_refine_focal_length = options.ba_refine_extra_params = False
+    options.ba_refine_focal_length, options.ba_refine_extra_params = how.calibrate, False
+    options.mapper.abs_pose_refine_focal_length = False
+    options.mapper.abs_pose_refine_extra_params = False
+    if how.leave_out_still:
+        options.mapper.filter_max_reproj_error = _OFF_PX
+        options.triangulation.merge_max_reproj_error = _OFF_PX
+        options.triangulation.complete_max_reproj_error = _OFF_PX
     options.ba_refine_sensor_from_rig = False
     options.mapper.init_min_num_inliers = 50
     options.mapper.init_min_tri_angle = 5.0
@@ -167,7 +236,7 @@ def _rig_config(colmap: Any, rig: Rig) -> Any:
     return colmap.RigConfig(cameras=cameras)
 
 
-def _result(model: Any, rig: Rig, frames: int) -> dict[str, Any]:
+def _result(model: Any, lens: Lens, rig: Rig, frames: int) -> dict[str, Any]:
     """Return the arrays of a `Structure`, or why there is none."""
     if model is None:
         return {
@@ -192,6 +261,7 @@ def _result(model: Any, rig: Rig, frames: int) -> dict[str, Any]:
         "seen": seen,
         "scale_sigma": _scale_sigma(model) if len(rig.matrix) > 1 else np.inf,
         "reprojection_px": model.compute_mean_reprojection_error(),
+        **lens._asdict(),
     }
 
 

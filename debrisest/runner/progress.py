@@ -101,7 +101,7 @@ class _Bar:
         self._bars, self._steps, self._left = bars, steps, left
         self._task = bars.add_task("steps", total=steps, left="", now="")
         self._running: dict[str, None] = {}
-        self._parts: dict[str, tuple[str, "TaskID"]] = {}
+        self._parts: dict[str, tuple[str, TaskID]] = {}
         self._began, self._looked, self._finished = monotonic(), 0.0, 0
 
     def started(self, steps: Sequence[Step]) -> None:

@@ -18,10 +18,11 @@ _PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 def body_answer(data: Data) -> list[str]:
     """Return the answer line by line, values ± 1 sigma; what is not told has no line."""
     if failure := str(data.get("failure", "")):
-        return [f"NO RESULT: {failure}"]
+        return [*_laid_out(_images(data)), f"NO RESULT: {failure}"]
     if "volume" not in data:
         return [f"NO RESULT: {data.get('status', 'nothing was estimated')}"]
     lines = {
+        **_images(data),
         "status": str(data.get("status", "")),
         "mesh": str(data.get("mesh_method", "")),
         "mended": str(data.get("mended", "")),
@@ -29,7 +30,33 @@ def body_answer(data: Data) -> list[str]:
         **_numbers(data),
         "cross-check": _hulls(data),
     }
+    return _laid_out(lines)
+
+
+def _laid_out(lines: dict[str, str]) -> list[str]:
     return [f"{label:{_LABEL}}{text}" for label, text in lines.items() if text]
+
+
+def _images(data: Data) -> dict[str, str]:
+    """Return the lines of how many images were placed, and of where the calibration came from."""
+    if "found_camera_matrix" not in data:
+        return {}
+    placed = np.isfinite(data["view_translation"][:, 0])
+    points = np.isfinite(data["cloud_point_r"][:, 0]).sum()
+    lines = {
+        "images": f"{placed.sum()} of {len(placed)} placed, {points} points, "
+        f"{float(data['reprojection']):.2f} px off in the mean"
+    }
+    spread, source = float(data["found_focal_spread"]), str(data.get("focal_source", ""))
+    focal = float(data["found_camera_matrix"][0, 0, 0])
+    if np.isinf(spread):
+        lines["focal length"] = f"{focal:.6g} px, which the images do not tell"
+    elif spread > 0.0:
+        found = told(focal, spread * focal, "px")
+        lines["focal length"] = f"{found}, from the images, begun with {source}"
+    elif source:
+        lines["focal length"] = f"{focal:.6g} px, from {source}"
+    return lines
 
 
 def _numbers(data: Data) -> dict[str, str]:

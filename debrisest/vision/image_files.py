@@ -5,7 +5,8 @@ with the same names; ``times.csv`` (``frame,time_s``) has the times, if it is th
 """
 
 import csv
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -33,20 +34,27 @@ class ImageSequence(NamedTuple):
     """(time, camera, row, column)."""
     times: Array | None
     """Seconds (time,), where a file tells them."""
+    reduced: float = 1.0
+    """Their width over that in the files."""
+    first: Path | None = None
+    """The file of the first image."""
 
 
-def read_images(path: Path) -> ImageSequence:
-    """Return the images of a folder or of a video file.
+def read_images(path: Path, widest: int | None = None, gaps: bool = False) -> ImageSequence:
+    """Return the images of a folder, in the order of the numbers in their names, or of a video.
+
+    Images with more columns than ``widest`` are reduced to that many. ``gaps``: whether numbers may
+    be missing among the frames.
 
     Raises `UserError`: nothing there, no images, unreadable or damaged ones, other sizes, missing
     frames, times that do not fit.
     """
     if path.is_dir():
-        return _folder(path)
+        return _folder(path, widest, gaps)
     if not path.is_file():
         raise UserError(f"{path}: no such folder or file")
     if path.suffix.lower() in VIDEOS:
-        return _video(path)
+        return _video(path, widest)
     allowed = ", ".join(VIDEOS)
     raise UserError(f"{path}: neither a folder of images nor a video file ({allowed})")
 
@@ -85,7 +93,7 @@ def write_video(path: Path, frames: NDArray[np.uint8], rate_hz: float) -> None:
     writer.release()
 
 
-def _folder(path: Path) -> ImageSequence:
+def _folder(path: Path, widest: int | None, gaps: bool) -> ImageSequence:
     cameras = PAIR if all((path / name).is_dir() for name in PAIR) else ("camera",)
     folders = [path / name for name in cameras] if len(cameras) > 1 else [path]
     names = [_names(folder) for folder in folders]
@@ -95,26 +103,30 @@ def _folder(path: Path) -> ImageSequence:
                 f"{path}: {lacking[0]} is not in both {' and '.join(cameras)} "
                 f"({len(lacking)} such frames); remove it, or add the other image"
             )
-        _check_numbers(folder, own)
-    found = [[_image(folder / name) for name in names[0]] for folder in folders]
-    _check_sizes(
-        [
-            (folder / name, image)
-            for folder, own in zip(folders, found)
-            for name, image in zip(names[0], own)
-        ]
-    )
+        if not gaps:
+            _check_numbers(folder, own)
+    first = folders[0] / names[0][0]
+    shape = _image(first).shape
+    found = [[_alike(folder / name, shape, widest) for name in names[0]] for folder in folders]
     frames = np.stack([np.stack(own) for own in found], axis=1)
-    return ImageSequence(str(path), cameras, frames, _times(path / TIMES, names[0]))
+    times, reduced = _times(path / TIMES, names[0]), frames.shape[3] / shape[1]
+    return ImageSequence(str(path), cameras, frames, times, reduced, first)
 
 
 def _names(folder: Path) -> list[str]:
-    """Return the names of the images in a folder, in their order."""
-    found = sorted(one.name for one in folder.iterdir() if one.suffix.lower() in SUFFIXES)
+    """Return the names of the images in a folder, in the order of the numbers in them."""
+    there = (one.name for one in folder.iterdir() if one.suffix.lower() in SUFFIXES)
+    found = sorted((name for name in there if not name.startswith(".")), key=in_order)
     if not found:
         allowed = ", ".join(SUFFIXES)
         raise UserError(f"{folder}: no images there ({allowed})")
     return found
+
+
+def in_order(name: str) -> tuple[list[tuple[int, str]], str]:
+    """Return a key by which names stand in the order of their numbers: 2 before 10."""
+    parts = re.findall(r"[0-9]+|[^0-9]+", name)
+    return [(int(part), "") if part[0] in "0123456789" else (-1, part) for part in parts], name
 
 
 def _check_numbers(folder: Path, names: Sequence[str]) -> None:
@@ -136,19 +148,35 @@ def _check_numbers(folder: Path, names: Sequence[str]) -> None:
 def _image(path: Path) -> NDArray[np.uint8]:
     cv2 = vision_library("cv2")
     content = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    image = cv2.imdecode(content, cv2.IMREAD_GRAYSCALE) if len(content) else None
+    whole = len(content) > 0 and not _cut_off(content.tobytes())
+    image = cv2.imdecode(content, cv2.IMREAD_GRAYSCALE) if whole else None
     if image is None:
         raise UserError(f"{path}: not an image that can be read; it may be damaged")
     return np.asarray(image)
 
 
-def _check_sizes(images: Iterable[tuple[Path, NDArray[np.uint8]]]) -> None:
-    shape: tuple[int, ...] = ()
-    for path, image in images:
-        shape = shape or image.shape
-        if image.shape != shape:
-            told = [f"{width} x {height}" for height, width in (image.shape, shape)]
-            raise UserError(f"{path}: {told[0]} pixels, the first image has {told[1]}")
+def _cut_off(content: bytes) -> bool:
+    """Return whether a JPEG ends within its last scan, which decoders fill up with grey."""
+    scan, end = (content.rfind(marker) for marker in (b"\xff\xda", b"\xff\xd9"))
+    return content.startswith(b"\xff\xd8") and end < scan
+
+
+def _alike(path: Path, shape: tuple[int, ...], widest: int | None) -> NDArray[np.uint8]:
+    """Return an image of the shape that all have, reduced to the widest."""
+    image = _image(path)
+    if image.shape != shape:
+        told = [f"{width} x {height}" for height, width in (image.shape, shape)]
+        raise UserError(f"{path}: {told[0]} pixels, the first image has {told[1]}")
+    return _reduced(image, widest)
+
+
+def _reduced(image: NDArray[np.uint8], widest: int | None) -> NDArray[np.uint8]:
+    height, width = image.shape
+    if widest is None or width <= widest:
+        return image
+    cv2 = vision_library("cv2")
+    size = widest, max(1, round(height * widest / width))
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))
 
 
 def _times(path: Path, names: Sequence[str]) -> Array | None:
@@ -168,15 +196,16 @@ def _times(path: Path, names: Sequence[str]) -> Array | None:
     return times
 
 
-def _video(path: Path) -> ImageSequence:
+def _video(path: Path, widest: int | None) -> ImageSequence:
     cv2 = vision_library("cv2")
     video: Any = cv2.VideoCapture(str(path))
-    frames = []
+    frames, width = [], 0
     while video.isOpened():
         there, frame = video.read()
         if not there:
             break
-        frames.append(cv2.cvtColor(frame, cv2.COLOR_BGR2GRAY))
+        frames.append(_reduced(cv2.cvtColor(frame, cv2.COLOR_BGR2GRAY), widest))
+        width = frame.shape[1]
     rate, said = video.get(cv2.CAP_PROP_FPS), int(video.get(cv2.CAP_PROP_FRAME_COUNT))
     video.release()
     if not frames:
@@ -186,4 +215,5 @@ def _video(path: Path) -> ImageSequence:
             f"{path}: {len(frames)} of {said} frames can be read; the video is damaged or cut off"
         )
     times = np.arange(len(frames)) / rate if rate > 0 else None
-    return ImageSequence(str(path), ("camera",), np.stack(frames)[:, None], times)
+    shown = np.stack(frames)[:, None]
+    return ImageSequence(str(path), ("camera",), shown, times, shown.shape[3] / width)

@@ -31,6 +31,20 @@ def test_the_body_is_told_from_what_is_behind_it(room):
     assert (found != truth).sum() / truth.sum() < 0.1
 
 
+def test_what_a_plain_backdrop_seldom_shows_is_no_body():
+    """A square that turns about its middle hides its inner part always, its corners seldom."""
+    v, u = np.indices(SHAPE) - np.array([45.0, 60.0])[:, None, None]
+    rng, frames, truth = np.random.default_rng(4), [], []
+    for angle in np.radians(np.arange(0, 90, 6)):
+        x, y = np.cos(angle) * u + np.sin(angle) * v, np.cos(angle) * v - np.sin(angle) * u
+        inside = np.maximum(np.abs(x), np.abs(y)) < 25.0
+        image = np.where(inside, 60 + 20 * np.sin(x / 3) * np.cos(y / 4), 150 + 0.2 * u + 0.1 * v)
+        frames.append(np.clip(np.rint(image + rng.normal(0, 1.5, SHAPE)), 0, 255))
+        truth.append(inside)
+    found = silhouettes(np.array(frames, dtype=np.uint8)[:, None])[:, 0]
+    assert (found != truth).sum() / np.sum(truth) < 0.06
+
+
 def test_nothing_there_is_said():
     rng = np.random.default_rng(3)
     frames = np.rint(np.abs(rng.normal(0, 1.5, (6, 1, *SHAPE)))).astype(np.uint8)

@@ -33,6 +33,28 @@ def test_a_folder_is_read_as_it_was_written(tmp_path: Path, cameras: tuple[str, 
     assert (found.times == written.times).all()
 
 
+def test_images_are_read_in_the_order_of_the_numbers_in_their_names(tmp_path: Path) -> None:
+    for number in (10, 2, 1, 9):
+        cv2.imwrite(str(tmp_path / f"turn{number}.png"), np.full((8, 8), number, np.uint8))
+    (tmp_path / "._turn1.png").write_bytes(b"what some systems leave beside files")
+    found = read_images(tmp_path, gaps=True)
+    assert found.frames[:, 0, 0, 0].tolist() == [1, 2, 9, 10]
+    assert found.first == tmp_path / "turn1.png"
+    with pytest.raises(UserError, match="frame 3 is missing"):
+        read_images(tmp_path)
+
+
+def test_wide_images_are_reduced_to_their_mean(tmp_path: Path) -> None:
+    fine = np.random.default_rng(3).integers(0, 255, (48, 64)).astype(np.uint8)
+    cv2.imwrite(str(tmp_path / "a.png"), fine)
+    found = read_images(tmp_path, widest=32)
+    assert found.frames.shape == (1, 1, 24, 32)
+    assert found.reduced == 0.5
+    blocks = fine.reshape(24, 2, 32, 2).mean(axis=(1, 3))
+    assert np.abs(found.frames[0, 0] - blocks).max() <= 1
+    assert (read_images(tmp_path, widest=64).frames[0, 0] == fine).all()
+
+
 @pytest.mark.parametrize("suffix", [".avi", ".mp4"])
 def test_a_video_is_read_with_its_rate(tmp_path: Path, suffix: str) -> None:
     column = np.linspace(40, 200, 64).astype(np.uint8)
@@ -68,6 +90,14 @@ def _damaged(folder: Path) -> None:
     path.write_bytes(path.read_bytes()[:40])
 
 
+def _cut_off(folder: Path) -> None:
+    for side in ("left", "right"):
+        (folder / side / "000001.png").unlink()
+        photograph = np.random.default_rng(2).integers(0, 255, (48, 64)).astype(np.uint8)
+        content = cv2.imencode(".jpg", photograph)[1].tobytes()
+        (folder / side / "000001.jpg").write_bytes(content[: len(content) // 2])
+
+
 def _hollow(folder: Path) -> None:
     (folder / "left" / "000001.png").write_bytes(b"")
 
@@ -87,6 +117,7 @@ def _times_back(folder: Path) -> None:
         (_empty, "no images there"),
         (_missing_right, "000002.png is not in both left and right"),
         (_missing_both, "frame 2 is missing"),
+        (_cut_off, "000001.jpg: not an image that can be read"),
         (_small, "000003.png: 64 x 40 pixels, the first image has 64 x 48"),
         (_damaged, "000001.png: not an image that can be read"),
         (_hollow, "000001.png: not an image that can be read"),

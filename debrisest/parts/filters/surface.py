@@ -13,6 +13,7 @@ from debrisest.reconstruction.body import (
     LEAST_COVERAGE,
     Body,
     Method,
+    Outline,
     reconstructed_body,
 )
 from debrisest.reconstruction.error_bars import packed
@@ -31,6 +32,9 @@ _METHODS: dict[Method, str] = {
     "fusion": "silhouettes fused with depth: closes whatever is seen and keeps thin panels",
     "poisson": "screened Poisson surface of the dense cloud: for compact bodies",
 }
+_BY_CLOUD = (
+    "; outlines are those of the cloud, since silhouettes do not tell the body: hollows fill"
+)
 
 
 class Surface(FilterPart):
@@ -43,6 +47,9 @@ class Surface(FilterPart):
     method: Method = "fusion"
     """Silhouettes fused with depth, which closes whatever is seen and keeps thin panels, or the
     screened Poisson surface of the dense cloud, for compact bodies."""
+    outline: Outline = "silhouettes"
+    """What the body ends at in each image: its silhouette, or, where silhouettes do not hold four
+    of five points of the cloud, the convex hull of the cloud."""
 
     def run(self, model: ShapeModel, given: Given) -> Estimates:
         """Return volume, centre and inertia of density one, the same at all epochs, and meshes."""
@@ -70,7 +77,8 @@ class Surface(FilterPart):
         )
 
     def _body(self, model: ShapeModel, run: int) -> Body:
-        return reconstructed_body(*model.images(run), self.method, model.known_length)
+        images = model.images(run, required=self.outline == "silhouettes")
+        return reconstructed_body(*images, self.method, model.known_length, self.outline)
 
 
 def _meshes(bodies: list[Body]) -> Data:
@@ -84,7 +92,9 @@ def _meshes(bodies: list[Body]) -> Data:
         "triangle_seen": np.stack(
             [padded(body.seen.astype(np.float64), triangles) for body in bodies]
         ),
-        "mesh_method": np.array([_METHODS[body.method] for body in bodies]),
+        "mesh_method": np.array(
+            [_METHODS[each.method] + _BY_CLOUD * each.by_cloud for each in bodies]
+        ),
         "mended": np.array(["; ".join(body.mesh.mended) for body in bodies]),
         "cell": np.array([body.cell for body in bodies]),
         "surface_seen": np.array([body.coverage for body in bodies]),

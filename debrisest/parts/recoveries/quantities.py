@@ -34,6 +34,13 @@ QUANTITIES = {
     "cloud_seen": Quantity(("run", "time_s", "cloud_point"), "1", "which frames see a point"),
     "scale_spread": Quantity(RUN, "1", "relative 1-sigma of the scale; infinite: no scale"),
     "reprojection": Quantity(RUN, "px", "mean distance of features from where they should be"),
+    "found_camera_matrix": Quantity(
+        ("run", "camera", "row", "column"), "px", "camera matrix, as given or as images tell it"
+    ),
+    "found_lens_distortion": Quantity(
+        ("run", "camera", "coefficient"), "1", "k1, k2, p1, p2, k3, as given or as images tell them"
+    ),
+    "found_focal_spread": Quantity(RUN, "1", "relative 1-sigma of the focal length; 0: given"),
     "coverage": Quantity(RUN, "1", "share of epochs with an attitude", "1"),
     "pieces": Quantity(RUN, "1", "pieces of uninterrupted samples", "1", two_sided=True),
     "signs_right": Quantity(RUN, "1", "share of sign decisions that were right", "1"),

@@ -10,9 +10,9 @@ import numpy as np
 
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
-from debrisest.problems.shape.model import seen
-from debrisest.reconstruction.silhouettes import Frames
-from debrisest.reconstruction.structure import Rig, Structure, structure_from_motion
+from debrisest.problems.shape.model import pinhole_images
+from debrisest.reconstruction.silhouettes import Frames, silhouettes
+from debrisest.reconstruction.structure import How, Rig, Structure, structure_from_motion
 from debrisest.roles import RecoveryPart
 
 _SCALED = "the baseline of the cameras gives the scale"
@@ -33,13 +33,18 @@ class StructureFromMotion(RecoveryPart):
     gives = (
         *("view_rotation", "view_translation", "cloud_point_r", "cloud_seen"),
         *("scale_spread", "reprojection"),
+        *("found_camera_matrix", "found_lens_distortion", "found_focal_spread"),
     )
+    version = 2
     libraries = ("cv2", "pycolmap")
     kind: Literal["structure_from_motion"]
+    leave_out: Literal["outside_silhouettes", "still_features"] = "outside_silhouettes"
+    """Features that are none of the body's: those outside of silhouettes, or those that stand still
+    in the images; the latter asks for nothing but that the camera stands still too."""
 
     def recover(self, data: Data, clock: Clock) -> Data:
         """Return places (run, time), points (run, cloud_point) and how well they fit."""
-        found = [_structure(data, run) for run in range(len(data["run"]))]
+        found = [self._structure(data, run) for run in range(len(data["run"]))]
         most = max(len(each.points) for each in found)
         scaled = data["camera_matrix"].shape[1] > 1
         return {
@@ -51,8 +56,20 @@ class StructureFromMotion(RecoveryPart):
             ),
             "scale_spread": np.array([each.scale_sigma for each in found]),
             "reprojection": np.array([each.reprojection_px for each in found]),
+            **_cameras(data, found),
             "status": np.array([_SCALED if scaled else _UNSCALED] * len(found)),
         }
+
+    def _structure(self, data: Data, run: int) -> Structure:
+        frames, rig = pinhole_images(data, run)
+        still = self.leave_out == "still_features"
+        spread = data.get("focal_spread", np.zeros(run + 1))[run]
+        how = How(calibrate=bool(spread > 0.0), leave_out_still=still)
+        masks = np.ones(frames.shape, dtype=np.bool_) if still else silhouettes(frames)
+        folder = _folder(frames, rig, how)
+        found = structure_from_motion(frames, masks, rig, folder, how)
+        shutil.rmtree(folder, ignore_errors=True)
+        return found
 
     def assess(self, data: Data) -> Data:
         """Return the share of frames that found a place."""
@@ -65,18 +82,23 @@ def padded(values: Array, length: int) -> Array:
     return np.concatenate([values, rest])
 
 
-def _structure(data: Data, run: int) -> Structure:
-    frames, masks, rig = seen(data, run)
-    folder = _folder(frames, rig)
-    found = structure_from_motion(frames, masks, rig, folder)
-    shutil.rmtree(folder, ignore_errors=True)
-    return found
+def _cameras(data: Data, found: list[Structure]) -> Data:
+    """Return the cameras as given, but for what images tell of one that was not calibrated."""
+    matrix, bent = data["camera_matrix"].copy(), data["lens_distortion"].copy()
+    for run, each in enumerate(found):
+        if each.lens.focal_spread > 0.0:
+            matrix[run, 0], bent[run, 0] = each.lens.matrix, each.lens.distortion
+    return {
+        "found_camera_matrix": matrix,
+        "found_lens_distortion": bent,
+        "found_focal_spread": np.array([each.lens.focal_spread for each in found]),
+    }
 
 
-def _folder(frames: Frames, rig: Rig) -> Path:
+def _folder(frames: Frames, rig: Rig, how: How) -> Path:
     """Return the folder of these very images in the user's cache."""
     digest = sha256(np.ascontiguousarray(frames).tobytes())
-    for values in rig:
+    for values in (*rig, *how):
         digest.update(np.ascontiguousarray(values).tobytes())
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return cache / "debrisest" / "structure" / digest.hexdigest()[:20]

@@ -12,6 +12,8 @@ QUANTITIES = {
     ),
     "camera_matrix": Quantity(("run", "camera", "row", "column"), "px", "camera matrix"),
     "lens_distortion": Quantity(("run", "camera", "coefficient"), "1", "k1, k2, p1, p2, k3"),
+    "focal_spread": Quantity(RUN, "1", "relative 1-sigma of the focal length; 0: calibrated"),
+    "focal_source": Quantity(RUN, "", "where the focal length comes from, in words"),
     "baseline": Quantity(RUN, "m", "distance between the cameras"),
     "measured_q_if": Quantity(TIME_QUATERNION, "1", "measured attitude of features or body axes"),
     "q_if_noise": Quantity(TIME, "rad", "1-sigma of its error about each axis; NaN if not known"),

@@ -2,7 +2,7 @@
 
 from hashlib import sha256
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
@@ -12,9 +12,11 @@ from debrisest.errors import UserError
 from debrisest.roles import Positive, SourcePart
 from debrisest.tracks.calibration import read_calibration
 from debrisest.tracks.types import Camera
+from debrisest.tracks.write_calibration import camera_matrix
+from debrisest.vision.focal_length import first_focal
 from debrisest.vision.image_files import SUFFIXES, TIMES, ImageSequence, read_images
 
-_COEFFICIENTS = 5
+_COEFFICIENTS, _FEWEST = 5, 3
 
 
 class MeasuredImages(SourcePart):
@@ -22,14 +24,19 @@ class MeasuredImages(SourcePart):
 
     gives = (
         *("measured_image", "camera_matrix", "lens_distortion"),
-        *("rig_rotation", "rig_translation"),
+        *("rig_rotation", "rig_translation", "focal_spread", "focal_source"),
     )
     libraries = ("cv2",)
     kind: Literal["image_files"]
     folder: str
     """A folder of images (of a pair: with `left` and `right` in it), or a video file."""
-    camera: str
-    """Calibration in OpenCV's YAML."""
+    camera: str | None = None
+    """Calibration in OpenCV's YAML, which a pair needs; none: that of one camera follows from its
+    images, with a start from EXIF or the field of view."""
+    field_of_view_deg: Annotated[float, Field(gt=1, lt=170)] | None = None
+    """Across the longer side of an image, where nothing is calibrated; none: EXIF, or 50."""
+    widest_px: int | None = Field(None, ge=64)
+    """Images with more columns are reduced to this many."""
     rate_hz: Positive | None = None
     """Frame rate of images that have no times; none: one each second."""
     every: int = Field(1, ge=1)
@@ -37,22 +44,52 @@ class MeasuredImages(SourcePart):
 
     def read(self, folder: Path) -> Data:
         """Return images with their times, and what is known of the cameras."""
-        images = read_images(folder / self.folder)
-        rig = read_calibration(folder / self.camera)
-        if len(rig.cameras) < len(images.cameras):
-            raise UserError(f"{folder / self.camera}: one camera, but {images.source} has two")
+        images = read_images(folder / self.folder, self.widest_px, gaps=True)
         times = self._times(images)[:: self.every]
-        if len(times) < 2:
-            raise UserError(f"{images.source}: one image; a body that turns needs many")
-        cameras = rig.cameras[: len(images.cameras)]
+        if len(times) < _FEWEST:
+            told = "one image" if len(times) == 1 else f"{len(times)} images"
+            raise UserError(f"{images.source}: {told}; a body that turns needs {_FEWEST}, or more")
         return {
             "run": np.zeros(1),
             "time_s": times - times[0],
             "measured_image": images.frames[None, :: self.every],
-            "camera_matrix": np.array([[_matrix(camera) for camera in cameras]]),
+            **(self._uncalibrated(images) if self.camera is None else self._known(folder, images)),
+        }
+
+    def _known(self, folder: Path, images: ImageSequence) -> Data:
+        """Return the cameras of a calibration."""
+        path = folder / str(self.camera)
+        rig = read_calibration(path)
+        if len(rig.cameras) < len(images.cameras):
+            raise UserError(f"{path}: one camera, but {images.source} has two")
+        cameras = rig.cameras[: len(images.cameras)]
+        for camera in cameras:
+            _check_size(path, camera, images)
+        return {
+            "camera_matrix": np.array([[_matrix(camera, images.reduced) for camera in cameras]]),
             "lens_distortion": np.array([[_lens(camera) for camera in cameras]]),
             "rig_rotation": rig.rotation[None, : len(cameras)],
             "rig_translation": rig.translation[None, : len(cameras)],
+            "focal_spread": np.zeros(1),
+            "focal_source": np.array([f"the calibration {path.name}"]),
+        }
+
+    def _uncalibrated(self, images: ImageSequence) -> Data:
+        """Return a first camera, which the images are to correct."""
+        if len(images.cameras) > 1:
+            raise UserError(
+                f"{images.source}: a stereo pair needs its calibration, from which its scale comes"
+            )
+        height, width = images.frames.shape[2:]
+        path = images.first or Path(images.source)
+        first = first_focal(path, (width, height), self.field_of_view_deg)
+        return {
+            "camera_matrix": first.matrix((width, height))[None, None],
+            "lens_distortion": np.zeros((1, 1, _COEFFICIENTS)),
+            "rig_rotation": np.eye(3)[None, None],
+            "rig_translation": np.zeros((1, 1, 3)),
+            "focal_spread": np.array([first.spread]),
+            "focal_source": np.array([first.source]),
         }
 
     def digest(self, folder: Path) -> str:
@@ -60,7 +97,7 @@ class MeasuredImages(SourcePart):
         path = folder / self.folder
         inside = sorted(path.rglob("*")) if path.is_dir() else [path]
         used = [one for one in inside if one.suffix.lower() in SUFFIXES or one.name == TIMES]
-        files = [*(used or inside), folder / self.camera]
+        files = [*(used or inside), *([folder / self.camera] if self.camera else [])]
         whole = sha256()
         for file in files:
             whole.update(sha256(file.read_bytes()).digest())
@@ -72,9 +109,22 @@ class MeasuredImages(SourcePart):
         return np.arange(float(len(images.frames))) if images.times is None else images.times
 
 
-def _matrix(camera: Camera) -> Array:
-    (fx, fy), (cx, cy) = camera.focal_px, camera.centre_px
-    return np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+def _matrix(camera: Camera, reduced: float) -> Array:
+    """Return the matrix (3, 3) of a camera whose images were reduced to a part of their size."""
+    matrix = reduced * camera_matrix(camera)
+    matrix[:2, 2] += 0.5 * (reduced - 1.0)
+    matrix[2, 2] = 1.0
+    return np.asarray(matrix)
+
+
+def _check_size(path: Path, camera: Camera, images: ImageSequence) -> None:
+    """Raise UserError for a calibration of images of another size."""
+    width = round(images.frames.shape[3] / images.reduced)
+    if camera.size is not None and camera.size[0] != width:
+        raise UserError(
+            f"{path}: of images that are {camera.size[0]} pixels wide, but {images.source} has "
+            f"{width}: a calibration holds for the size that it was made with"
+        )
 
 
 def _lens(camera: Camera) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data
 from debrisest.reconstruction.silhouettes import Frames, silhouettes
-from debrisest.reconstruction.structure import Rig, Structure
+from debrisest.reconstruction.structure import Lens, Rig, Structure
 from debrisest.reconstruction.undistorted import undistorted
 
 ERROR_NAMES = (
@@ -34,19 +34,33 @@ class ShapeModel(NamedTuple):
     """The longest distance between two points of the body and its 1-sigma, m."""
     error_names: tuple[str, ...] = ERROR_NAMES
 
-    def images(self, run: int) -> ImagesOfBody:
-        """Return what there is of a run, given by its place among the runs."""
-        frames, masks, rig = seen(self.data, run)
+    def images(self, run: int, required: bool = True) -> ImagesOfBody:
+        """Return what there is of a run, given by its place among the runs.
+
+        Silhouettes that are not required are empty where nothing tells them.
+        """
+        frames, rig = pinhole_images(self.data, run, "found_")
+        try:
+            masks = silhouettes(frames)
+        except ValueError:
+            if required:
+                raise
+            masks = np.zeros(frames.shape, dtype=np.bool_)
         return ImagesOfBody(frames, masks, rig, structure_of(self.data, run))
 
 
 def seen(data: Data, run: int) -> tuple[Frames, BoolArray, Rig]:
     """Return images without distortion, silhouettes, and cameras of a run."""
-    matrix = data["camera_matrix"][run]
+    frames, rig = pinhole_images(data, run)
+    return frames, silhouettes(frames), rig
+
+
+def pinhole_images(data: Data, run: int, which: str = "") -> tuple[Frames, Rig]:
+    """Return images without distortion, and their cameras: as given, or the ones ``found_``."""
+    matrix = data[f"{which}camera_matrix"][run]
     frames = data["measured_image"][run].astype(np.uint8)
-    flat = undistorted(frames, matrix, data["lens_distortion"][run])
-    rig = Rig(matrix, data["rig_rotation"][run], data["rig_translation"][run])
-    return flat, silhouettes(flat), rig
+    flat = undistorted(frames, matrix, data[f"{which}lens_distortion"][run])
+    return flat, Rig(matrix, data["rig_rotation"][run], data["rig_translation"][run])
 
 
 def structure_of(data: Data, run: int) -> Structure:
@@ -60,4 +74,9 @@ def structure_of(data: Data, run: int) -> Structure:
         seen=data["cloud_seen"][run][:, there] == 1.0,
         scale_sigma=float(data["scale_spread"][run]),
         reprojection_px=float(data["reprojection"][run]),
+        lens=Lens(
+            data["found_camera_matrix"][run, 0],
+            data["found_lens_distortion"][run, 0],
+            float(data["found_focal_spread"][run]),
+        ),
     )

@@ -25,7 +25,7 @@ class ConstantDensityShape(ProblemPart):
     """The problem of this file; the mass, where it is known, takes the place of the density."""
 
     needs = (
-        *("measured_image", "camera_matrix", "lens_distortion", "rig_rotation"),
+        *("measured_image", "found_camera_matrix", "found_lens_distortion", "rig_rotation"),
         *("rig_translation", "view_rotation", "view_translation", "cloud_point_r", "scale_spread"),
     )
     model_kind = "shape_model"

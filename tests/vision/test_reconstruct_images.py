@@ -1,0 +1,127 @@
+"""reconstruct on photographs as people have them: JPEG, no calibration, a plain backdrop."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+from typer.testing import CliRunner
+
+from debrisest.cli.app import app
+from tests.vision.conftest import Scene
+
+pytest.importorskip("cv2")
+pytest.importorskip("pycolmap")
+pytest.importorskip("skimage")
+
+FOCAL_35MM, FOCAL_PX, WIDTH, HEIGHT = 0xA405, 500.0, 320, 240
+Photographs = Sequence[NDArray[np.uint8]]
+
+
+@pytest.fixture(scope="module")
+def photographs(scene: Scene) -> Photographs:
+    """A box that turns before a backdrop with details that stand still."""
+    data = scene(
+        {
+            "duration_s": 14,
+            "motion": {"rate_deg_s": [4.0, 8.0, 3.0]},
+            "observers": {"chaser": {"target_m": [0.0, 0.0, 5.4]}},
+            "sensors": {"camera": {"baseline_m": None, "ambient": 0.6, "noise_grey": 0.5}},
+        }
+    )
+    frames = data["measured_image"][0, :, 0].astype(np.uint8)
+    spots = np.random.default_rng(7).integers(120, 200, (HEIGHT // 8, WIDTH // 8))
+    backdrop = np.kron(spots, np.ones((8, 8))).astype(np.uint8)
+    return [np.where(frame > 12, frame, backdrop) for frame in frames]
+
+
+def put(folder: Path, photographs: Photographs, focal_mm: int | None = None) -> Path:
+    """Write photographs with names that are not padded, and EXIF if a focal length is given."""
+    folder.mkdir()
+    exif = Image.Exif()
+    if focal_mm is not None:
+        exif.get_ifd(0x8769)[FOCAL_35MM] = focal_mm
+    for number, pixels in enumerate(photographs):
+        Image.fromarray(pixels).save(folder / f"p{number + 1}.jpg", exif=exif, quality=95)
+    return folder
+
+
+def said(folder: Path, *options: object) -> tuple[int, str]:
+    out = folder.parent / "out" / folder.name
+    arguments = ["reconstruct", str(folder), "--out", str(out), "--quiet", *map(str, options)]
+    result = CliRunner().invoke(app, arguments)
+    assert "Traceback" not in result.output
+    assert result.exception is None or isinstance(result.exception, SystemExit)
+    return result.exit_code, result.output
+
+
+def line(output: str, label: str) -> str:
+    (found,) = (each for each in output.splitlines() if each.startswith(f"{label} "))
+    return found.removeprefix(label).strip()
+
+
+def test_photographs_without_a_calibration(
+    tmp_path: Path, photographs: Photographs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("debrisest.reconstruction.body._CELLS", (24, 40))
+    focal_mm = round(FOCAL_PX * 1.1 / np.hypot(WIDTH, HEIGHT) * np.hypot(36, 24))
+    folder = put(tmp_path / "box", photographs, focal_mm)
+    code, output = said(folder)
+    assert code == 0
+    placed, _, of = line(output, "images").split()[:3]
+    assert int(placed) >= 0.9 * int(of)
+    told = line(output, "focal length")
+    assert f"begun with EXIF ({focal_mm} mm" in told
+    focal, _, sigma = told.split()[:3]
+    assert abs(float(focal) - FOCAL_PX) < max(3.0 * float(sigma), 0.02 * FOCAL_PX)
+    assert "without a scale: only ratios" in output or "no number is told" in output
+    assert "volume " not in output
+    assert (tmp_path / "out" / "box" / "mesh.obj").is_file()
+
+
+def noise(count: int, height: int = 48) -> Photographs:
+    return list(np.random.default_rng(1).integers(0, 255, (count, height, 64)).astype(np.uint8))
+
+
+def blank(count: int) -> Photographs:
+    return [np.full((48, 64), 128, np.uint8)] * count
+
+
+@pytest.mark.parametrize(
+    ("shown", "code", "words"),
+    [
+        (noise(1), 2, "one image; a body that turns needs 3"),
+        (noise(2), 2, "2 images; a body that turns needs 3"),
+        (blank(5), 1, "find a place in one structure"),
+        (noise(1) * 5, 1, "find a place in one structure"),
+        (noise(5), 1, "find a place in one structure"),
+        ([*noise(4), *noise(1, height=40)], 2, "p5.jpg: 64 x 40 pixels, the first image has"),
+    ],
+    ids=["one", "two", "blank", "background", "noise", "sizes"],
+)
+def test_what_cannot_be_reconstructed_is_told(
+    tmp_path: Path, shown: Photographs, code: int, words: str
+) -> None:
+    found, output = said(put(tmp_path / "photographs", shown))
+    assert (found, words in output) == (code, True), output
+
+
+def test_a_pair_without_its_calibration_is_refused(tmp_path: Path) -> None:
+    for side in ("left", "right"):
+        (tmp_path / "pair").mkdir(exist_ok=True)
+        put(tmp_path / "pair" / side, noise(4))
+    code, output = said(tmp_path / "pair")
+    assert code == 2
+    assert "a stereo pair needs its calibration" in output
+
+
+def test_a_calibration_of_another_size_is_refused(tmp_path: Path) -> None:
+    folder = put(tmp_path / "photographs", noise(4))
+    keys = {"fx_px": 90, "fy_px": 90, "cx_px": 64, "cy_px": 48, "width_px": 128, "height_px": 96}
+    calibration = tmp_path / "calibration.yaml"
+    calibration.write_text("".join(f"{key}: {value}\n" for key, value in keys.items()))
+    code, output = said(folder)
+    assert code == 2
+    assert "128 pixels wide" in output
