@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from debrisest.reconstruction.structure import Lens, Structure
+from debrisest.reconstruction.structure import Structure
 from debrisest.reconstruction.turntable import table_under
 
 MIDDLE = np.array([3.0, 0.0, 0.5])
@@ -17,8 +17,7 @@ def structure(turn, down=25.0):
     rotation = (Rotation.from_euler("x", down, degrees=True) * level * turn).as_matrix()
     translation = [0.0, 0.0, 10.0] - rotation @ MIDDLE
     seen = np.ones((len(rotation), 1), dtype=bool)
-    lens = Lens(np.eye(3), np.zeros(5))
-    return Structure(rotation, translation, POINTS[:1], seen, np.inf, 0.5, lens)
+    return Structure(rotation, translation, POINTS[:1], seen, np.inf, 0.5)
 
 
 def about_z(degrees):
