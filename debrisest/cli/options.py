@@ -50,6 +50,9 @@ RerunFailed = Annotated[
 Cluster = Annotated[
     str | None, Option("--executor", help="Run on a cluster: dask:tcp://HOST:PORT.")
 ]
+WidestPx = Annotated[
+    int, Option("--widest-px", min=64, help="Reduce images of one camera with more columns.")
+]
 Quiet = Annotated[bool, Option("--quiet", help="No progress.")]
 Check = Annotated[bool, Option("--check", help="Exit 1 on unexpected verdicts.")]
 Report = Annotated[

@@ -8,7 +8,7 @@ from typer import Argument, Option
 from debrisest.cli.estimate import relative_to, write_new
 from debrisest.cli.exits import exit_if
 from debrisest.cli.inputs import load_all
-from debrisest.cli.options import RESULTS, Force, Quiet
+from debrisest.cli.options import RESULTS, Force, Quiet, WidestPx
 from debrisest.cli.stages import bring
 
 if TYPE_CHECKING:
@@ -44,9 +44,7 @@ def reconstruct(
         float | None,
         Option("--field-of-view-deg", help="Across the longer side, where nothing is calibrated."),
     ] = None,
-    widest_px: Annotated[
-        int, Option("--widest-px", min=64, help="Reduce images with more columns to so many.")
-    ] = 1280,
+    widest_px: WidestPx = 1280,
     every: Annotated[int, Option("--every", min=1, help="Take one image of so many.")] = 1,
     reference: Annotated[
         Path | None, Option("--reference", help="A CAD mesh to lay the body onto, and to compare.")

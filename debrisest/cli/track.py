@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from typer import Argument, Option
 
 from debrisest.cli.measured import Cameras, RateHz
-from debrisest.cli.options import RESULTS, Quiet
+from debrisest.cli.options import RESULTS, Quiet, WidestPx
 
 if TYPE_CHECKING:
     from debrisest.arrays import Array
@@ -26,6 +26,7 @@ def track(
     ],
     camera: Cameras = None,
     rate_hz: RateHz = None,
+    widest_px: WidestPx = 1280,
     out: Annotated[
         Path | None, Option("--out", help="Folder to write to (default: results/<stem>).")
     ] = None,
@@ -40,7 +41,7 @@ def track(
     from debrisest.vision.libraries import vision_library
 
     vision_library("cv2")
-    sequence = _read(images)
+    sequence = _read(images, widest_px)
     times, rig = _times(sequence, rate_hz), _rig(images[0], camera)
     pair = len(sequence.cameras) > 1
     if pair and rig is None:
@@ -62,14 +63,18 @@ def track(
     _tell_next(folder / "tracks.csv", rig, pair)
 
 
-def _read(paths: Sequence[Path]) -> "ImageSequence":
-    """Return the images of one folder or video, or of one for each camera of a pair."""
+def _read(paths: Sequence[Path], widest_px: int) -> "ImageSequence":
+    """Return the images of one folder or video, or of one for each camera of a pair.
+
+    Those of one camera are reduced to a width: from one to the next a feature may not move far.
+    """
     import numpy as np
 
     from debrisest.errors import UserError
     from debrisest.vision.image_files import PAIR, read_images
 
-    found = [read_images(path) for path in paths]
+    alone = len(paths) == 1 and not (paths[0] / PAIR[0]).is_dir()
+    found = [read_images(path, widest_px if alone else None) for path in paths]
     if len(found) == 1:
         return found[0]
     if len(found) > len(PAIR) or any(len(one.cameras) > 1 for one in found):

@@ -21,6 +21,7 @@ from debrisest.reconstruction.outlines import main_part, outlines
 from debrisest.reconstruction.poisson import poisson_mesh
 from debrisest.reconstruction.silhouettes import Frames
 from debrisest.reconstruction.structure import Rig, Structure
+from debrisest.reconstruction.turntable import Table, table_under
 from debrisest.reconstruction.winding import pieces_of
 from debrisest.vision.polyhedron import MassProperties, mass_properties
 
@@ -50,7 +51,7 @@ class Body(NamedTuple):
     cell: float
     """Side of the finer resolution's cells."""
     coverage: float
-    """Share of the surface that the images show."""
+    """Share of the surface that the images show, but for a base on a table."""
     seen: BoolArray
     """Which triangles they show (triangle,)."""
     hull_volume: float
@@ -59,6 +60,8 @@ class Body(NamedTuple):
     """Of what all silhouettes share: the volume is no larger, but for their errors."""
     by_cloud: bool
     """Whether the outlines of the cloud took the place of silhouettes."""
+    on_table: bool
+    """Whether it was closed below by the table on which it turned."""
 
 
 def reconstructed_body(
@@ -93,11 +96,13 @@ def reconstructed_body(
     extent = float(np.ptp(structure.points, axis=0).max())
     cells = [extent / count for count in _CELLS]
     cloud = _cloud(views, outer, cells[0])
+    if outline == "either":
+        outer = outer._replace(table=table_under(cloud.points, structure))
     coarse, mesh = _SURFACES[method](views, outer, cells)
     coverage = triangles_seen(mesh, cloud, _NEAR * extent)
+    share = _share_seen(mesh, coverage, outer.table, cells[1])
     factor, scale_sigma = _scale(mesh, structure, known_length, cells[1])
     coarse, mesh = (each._replace(vertices=factor * each.vertices) for each in (coarse, mesh))
-    share = share_of_area(mesh, coverage)
     doubts = Doubts(scale_sigma, factor * depth_sigma(views), 1.0 - share)
     return Body(
         mesh=mesh,
@@ -110,19 +115,24 @@ def reconstructed_body(
         hull_volume=factor**3 * _hull_volume(cloud.points),
         silhouette_volume=factor**3 * outer.volume(extent / _HULL_CELLS),
         by_cloud=by_cloud,
+        on_table=outer.table is not None,
     )
 
 
 class _Outer(NamedTuple):
-    """Silhouettes of the first camera (time, row, column), its matrix and its places."""
+    """Silhouettes of the first camera (time, row, column), its matrix and its places; a table."""
 
     masks: BoolArray
     matrix: Array
     structure: Structure
+    table: Table | None = None
 
     def outside(self, points: Array | fusion.Values) -> fusion.Values:
-        """Return how far points (n, 3) lie outside of the silhouettes (n,), m."""
-        return fusion.outside_silhouettes(points, *self)
+        """Return how far points (n, 3) lie outside of silhouettes, or below the table (n,), m."""
+        found = fusion.outside_silhouettes(points, self.masks, self.matrix, self.structure)
+        if self.table is None:
+            return found
+        return np.maximum(found, self.table.below(np.asarray(points, float)).astype(np.float32))
 
     def holds(self, points: Array) -> BoolArray:
         """Return which points (n, 3) lie in the silhouettes, or next to them."""
@@ -163,6 +173,15 @@ def _fused(views: list[DepthView], outer: _Outer, cells: list[float]) -> list[Cl
 
 _SURFACES = {"poisson": _poisson, "fusion": _fused}
 """Of depth images, silhouettes, and the sides of coarse and fine cells: coarse and fine mesh."""
+
+
+def _share_seen(mesh: ClosedMesh, seen: BoolArray, table: Table | None, cell: float) -> float:
+    """Return the share of the surface, without a base that stands on a table, that images show."""
+    if table is None:
+        return share_of_area(mesh, seen)
+    middles = mesh.vertices[mesh.triangles].mean(axis=1)
+    above = table.below(middles) < -cell
+    return share_of_area(mesh, seen & above) / share_of_area(mesh, above)
 
 
 def _hull_volume(points: Array) -> float:

@@ -69,8 +69,8 @@ class Structure(NamedTuple):
     """1-sigma of the scale, of it; infinite where nothing gives the scale."""
     reprojection_px: float
     """Mean distance of what is seen from where it should be."""
-    lens: Lens
-    """The first camera's, as it was given or as the images tell it."""
+    lens: Lens | None = None
+    """The camera's as the images tell it; None where it was given."""
 
     @property
     def registered(self) -> IntArray:
@@ -97,6 +97,7 @@ def structure_from_motion(
     with np.load(result) as found:
         if "failure" in found:
             raise ValueError(str(found["failure"]))
+        lens = Lens(found["matrix"], found["distortion"], float(found["focal_spread"]))
         return Structure(
             rotation=found["rotation"],
             translation=found["translation"],
@@ -104,7 +105,7 @@ def structure_from_motion(
             seen=found["seen"],
             scale_sigma=float(found["scale_sigma"]),
             reprojection_px=float(found["reprojection_px"]),
-            lens=Lens(found["matrix"], found["distortion"], float(found["focal_spread"])),
+            lens=lens if lens.focal_spread > 0.0 else None,
         )
 
 

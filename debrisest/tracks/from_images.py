@@ -84,7 +84,7 @@ def stereo_tracks(images: ImageSequence, rig: Rig, times: Array) -> Tracked:
 
 
 def pixel_tracks(images: ImageSequence, times: Array) -> Tracked:
-    """Return pixels of one camera, as its lens shows them.
+    """Return pixels of one camera, as its lens shows them, of the images before they were reduced.
 
     Points that were lost are not known again: that takes a map of the body. Raises `UserError`
     where too little is found.
@@ -104,7 +104,7 @@ def pixel_tracks(images: ImageSequence, times: Array) -> Tracked:
     left_out = tracker.counts + Counter({f"seen in fewer than {SHORTEST} frames": lost})
     tracks = Tracks(
         images.source, times, _names(len(kept)), np.arange(len(times)),
-        cameras=images.cameras, pixels=pixels,
+        cameras=images.cameras, pixels=(pixels + 0.5) / images.reduced - 0.5,
     )  # fmt: skip
     return Tracked(tracks, pixels, left_out, 0, np.nan)
 

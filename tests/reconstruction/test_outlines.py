@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("cv2")
 
 from debrisest.reconstruction.outlines import main_part, outlines
-from debrisest.reconstruction.structure import Lens, Structure
+from debrisest.reconstruction.structure import Structure
 
 MATRIX = np.array([[100.0, 0.0, 50.0], [0.0, 100.0, 40.0], [0.0, 0.0, 1.0]])
 
@@ -16,8 +16,7 @@ def structure(points, seen=3):
     translation[3] = np.nan
     shown = np.zeros((4, len(points)), dtype=bool)
     shown[:seen] = True
-    lens = Lens(MATRIX, np.zeros(5))
-    return Structure(rotation, translation, points, shown, np.inf, 0.5, lens)
+    return Structure(rotation, translation, points, shown, np.inf, 0.5)
 
 
 def test_points_far_from_the_others_are_not_the_body():

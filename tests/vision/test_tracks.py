@@ -9,8 +9,10 @@ from typer.testing import CliRunner
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.cli import app
+from debrisest.tracks.from_images import pixel_tracks
 from debrisest.tracks.read import read_measured
 from debrisest.tracks.types import Poses, Tracks
+from debrisest.vision.image_files import read_images
 
 pytest.importorskip("cv2")
 
@@ -82,6 +84,16 @@ def test_one_camera_gives_pixels_of_the_same_body(rendered: Path, tmp_path: Path
     assert isinstance(tracks, Tracks) and tracks.pixels is not None
     assert tracks.points is None and len(tracks.features) >= 20
     assert "no calibration was given" in said
+
+
+def test_pixels_are_those_of_the_images_before_they_were_reduced(rendered: Path) -> None:
+    images = read_images(rendered / "left")
+    whole, half = (
+        pixel_tracks(each, np.arange(8.0), lambda _: None).tracks.pixels
+        for each in (images, images._replace(reduced=0.5))
+    )
+    assert whole is not None and half is not None
+    np.testing.assert_allclose(half + 0.5, 2.0 * (whole + 0.5))
 
 
 def test_a_room_that_stands_still_is_left_out(config: Path, tmp_path: Path) -> None:

@@ -19,6 +19,11 @@ from debrisest.reconstruction.body import (
 from debrisest.reconstruction.error_bars import packed
 from debrisest.roles import FilterPart, Given
 
+_ON_TABLE = (
+    "; it turned about one axis, seen from above: its base is taken to be flat at the lowest "
+    "points seen, and does not count as unseen"
+)
+
 
 class SurfaceStatus(Outcome):
     """How a mesh ended; `sentence` tells the user."""
@@ -81,6 +86,11 @@ class Surface(FilterPart):
         return reconstructed_body(*images, self.method, model.known_length, self.outline)
 
 
+def _in_words(body: Body) -> str:
+    """Return how a mesh was made, and why."""
+    return _METHODS[body.method] + _BY_CLOUD * body.by_cloud + _ON_TABLE * body.on_table
+
+
 def _meshes(bodies: list[Body]) -> Data:
     vertices = max(len(body.mesh.vertices) for body in bodies)
     triangles = max(len(body.mesh.triangles) for body in bodies)
@@ -92,9 +102,7 @@ def _meshes(bodies: list[Body]) -> Data:
         "triangle_seen": np.stack(
             [padded(body.seen.astype(np.float64), triangles) for body in bodies]
         ),
-        "mesh_method": np.array(
-            [_METHODS[each.method] + _BY_CLOUD * each.by_cloud for each in bodies]
-        ),
+        "mesh_method": np.array([_in_words(body) for body in bodies]),
         "mended": np.array(["; ".join(body.mesh.mended) for body in bodies]),
         "cell": np.array([body.cell for body in bodies]),
         "surface_seen": np.array([body.coverage for body in bodies]),

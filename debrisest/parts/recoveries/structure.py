@@ -85,13 +85,15 @@ def padded(values: Array, length: int) -> Array:
 def _cameras(data: Data, found: list[Structure]) -> Data:
     """Return the cameras as given, but for what images tell of one that was not calibrated."""
     matrix, bent = data["camera_matrix"].copy(), data["lens_distortion"].copy()
+    spread = np.zeros(len(found))
     for run, each in enumerate(found):
-        if each.lens.focal_spread > 0.0:
+        if each.lens is not None:
             matrix[run, 0], bent[run, 0] = each.lens.matrix, each.lens.distortion
+            spread[run] = each.lens.focal_spread
     return {
         "found_camera_matrix": matrix,
         "found_lens_distortion": bent,
-        "found_focal_spread": np.array([each.lens.focal_spread for each in found]),
+        "found_focal_spread": spread,
     }
 
 

@@ -66,6 +66,11 @@ def pinhole_images(data: Data, run: int, which: str = "") -> tuple[Frames, Rig]:
 def structure_of(data: Data, run: int) -> Structure:
     """Return the stored structure of a run."""
     points = data["cloud_point_r"][run]
+    lens = Lens(
+        matrix=data["found_camera_matrix"][run, 0],
+        distortion=data["found_lens_distortion"][run, 0],
+        focal_spread=float(data["found_focal_spread"][run]),
+    )
     there: Array = np.isfinite(points[:, 0])
     return Structure(
         rotation=data["view_rotation"][run],
@@ -74,9 +79,5 @@ def structure_of(data: Data, run: int) -> Structure:
         seen=data["cloud_seen"][run][:, there] == 1.0,
         scale_sigma=float(data["scale_spread"][run]),
         reprojection_px=float(data["reprojection"][run]),
-        lens=Lens(
-            data["found_camera_matrix"][run, 0],
-            data["found_lens_distortion"][run, 0],
-            float(data["found_focal_spread"][run]),
-        ),
+        lens=lens if lens.focal_spread > 0.0 else None,
     )
