@@ -13,6 +13,7 @@ QUANTITIES = {
     "camera_matrix": Quantity(("run", "camera", "row", "column"), "px", "camera matrix"),
     "lens_distortion": Quantity(("run", "camera", "coefficient"), "1", "k1, k2, p1, p2, k3"),
     "baseline": Quantity(RUN, "m", "distance between the cameras"),
+    "camera_q_lc": Quantity(("run", "quaternion"), "1", "attitude of the cameras to the leader"),
     "measured_q_if": Quantity(TIME_QUATERNION, "1", "measured attitude of features or body axes"),
     "q_if_noise": Quantity(TIME, "rad", "1-sigma of its error about each axis; NaN if not known"),
     "focal_px": Quantity(RUN, "px", "focal length"),
