@@ -60,7 +60,8 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     | {"missing_share": [0.0, 0.9], "outages_s": [[], [[1, 3], [2, 1e4]]]}
     | {"slow_s": [[], [{"span_s": [0, 5], "every_s": 3}]]}
     | {"attitude_noise_deg": [0.0, 1.0], "feature_error_m": [0.0, 0.1]},
-    "stereo_camera": {"baseline_m": [1], "pixel_noise_px": [1e-5, 1e-2], "from_s": [1.0, 1e3]}
+    "stereo_camera": {"baseline_m": [1], "q_lc": [[1, 0, 0, 0], [0.8, 0, 0, 0.6]]}
+    | {"pixel_noise_px": [1e-5, 1e-2], "from_s": [1.0, 1e3]}
     | {"flow_noise_px_s": [1e-5], "disparity_noise_px": [1e-5], "outlier_share": [0.0, 1.0]},
     "angular_acceleration": {"noise_rad_s2": [1e-5], "from_s": [1.0, 1e3]},
     "pinhole_camera": {"focal_px": [335], "half_size_px": [[240, 180]]},

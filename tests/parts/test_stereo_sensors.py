@@ -62,6 +62,23 @@ def test_a_start_of_bodies_only_leaves_out_what_no_body_can_have(simulated: Call
     assert 0.4 < shares[False] < 0.75
 
 
+def test_turned_cameras_see_what_is_before_them(simulated: Callable) -> None:
+    """Cameras that look 10 deg to the side and are rolled, against scipy's rotations."""
+    turn = Rotation.from_euler("ZY", [10.0, 35.0], degrees=True)
+    q_lc = turn.as_quat(scalar_first=True)
+    data = simulated(camera(q_lc=q_lc.tolist()))
+    body = quaternion.rotate(data["true_q_lt"][..., None, :], data["true_point_b"][:, None])
+    point = data["true_position"][..., None, :] + body
+    x, y, z = np.moveaxis(point @ turn.as_matrix(), -1, 0)
+    assert (y > 0).all()
+    for number, offset in ((0, 0.0), (1, 1.0)):
+        seen = data["measured_pixel"][:, :, number]
+        assert seen[..., 0] == pytest.approx((x - offset) / y, abs=1e-6)
+        assert seen[..., 1] == pytest.approx(z / y, abs=1e-6)
+    assert data["camera_q_lc"] == pytest.approx(np.tile(q_lc, (4, 1)))
+    assert "camera_q_lc" not in simulated(camera())
+
+
 def test_both_cameras_project_the_points(simulated: Callable) -> None:
     data = simulated(camera())
     turned = quaternion.rotate(data["true_q_lt"][..., None, :], data["true_point_b"][:, None])

@@ -21,16 +21,23 @@ POINTS = 5
 class Experiment:
     """The paper's case C, or A with the angular acceleration, over a few seconds."""
 
-    def __init__(self, runs, epochs, seed, slow=False, shown=None):
+    def __init__(self, runs, epochs, seed, slow=False, shown=None, q_lc=(1, 0, 0, 0)):
         rng = np.random.default_rng(seed)
         rate = (-0.1, -0.1, 0.034) if slow else (-1.0, -1.0, 0.934)
         start = np.zeros((runs, 15 + 3 * POINTS))
         start[:, :9] = [10, 60, 10, 0.01, -0.0225, -0.01, *np.radians(rate)]
+        # The cameras, and the target before them, are turned.
+        turn = Rotation.from_quat(q_lc, scalar_first=True)
+        start[:, :3] = turn.apply(start[:, :3])
         start[:, 9:15] = [0, 0, 0, 1, -0.186, -0.0797]
         start[:, 15:] = rng.uniform(-1.5, 1.5, (runs, 3 * POINTS))
         shown = shown or stereo_pose.Shown(acceleration=slow)
         self.known = stereo_pose.stereo_geometry(
-            Clock.regular(epochs, 1.0), *ORBIT, points=POINTS, shown=shown
+            Clock.regular(epochs, 1.0),
+            *ORBIT,
+            points=POINTS,
+            shown=shown,
+            to_camera=None if q_lc[0] == 1 else turn.inv().as_matrix(),
         )
         self.truth = simulate_truth(np.arange(float(epochs)), start, *ORBIT)
         variance = np.repeat([1.0, np.radians(1) ** 2, 1e-5, 0.5, 1.0], [6, 3, 4, 2, 3 * POINTS])

@@ -91,11 +91,13 @@ def test_measurements_of_the_exact_motion():
     np.testing.assert_allclose(acceleration, (rates[1] - rates[0]) / step, atol=1e-6)
 
 
-@pytest.mark.parametrize("raw", [False, True])
-def test_jacobians_match_differences(raw):
+@pytest.mark.parametrize(("raw", "turned"), [(False, False), (True, False), (False, True)])
+def test_jacobians_match_differences(raw, turned):
     known = stereo_pose.stereo_geometry(
         Clock.regular(3, 1.0), *ORBIT, points=4, shown=SHOWN, raw_rotation=raw
     )
+    if turned:
+        known = known._replace(to_camera=Rotation.from_rotvec([0.2, -0.3, 0.4]).as_matrix())
     state = any_states()
     for function, jacobian in (
         (stereo_pose.process, additive.process_jacobian),

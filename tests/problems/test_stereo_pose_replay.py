@@ -11,6 +11,10 @@ from debrisest.problems.stereo_pose import model as stereo_pose
 POINTS = 5
 
 
+TURNED = (0.5, -0.5, 0.5, 0.5)
+"""Cameras that look along another of the leader's axes."""
+
+
 @pytest.fixture(scope="module")
 def slow(experiment):
     return experiment(2, 7, 0, slow=True)
@@ -76,7 +80,9 @@ def test_arcs_match_steps_and_rewind(slow):
 
 
 @pytest.mark.parametrize("first", [0, 4])
-def test_derivatives_match_differences(slow, first):
+@pytest.mark.parametrize("q_lc", [(1, 0, 0, 0), TURNED])
+def test_derivatives_match_differences(experiment, first, q_lc):
+    slow = experiment(3, 7, 1, slow=True, q_lc=q_lc)
     model, state, epochs = slow.model, slow.prior, np.arange(first, 7)
 
     def shown(error):
@@ -128,9 +134,10 @@ def test_no_run_depends_on_those_beside_it(experiment):
 
 
 @pytest.mark.parametrize("shown", [stereo_pose.Shown(), stereo_pose.Shown(True, False, False)])
-def test_the_start_agrees_with_the_first_frame(experiment, shown):
+@pytest.mark.parametrize("q_lc", [(1, 0, 0, 0), TURNED])
+def test_the_start_agrees_with_the_first_frame(experiment, shown, q_lc):
     """Without noise: points exactly, and flow too where it is measured."""
-    test = experiment(4, 2, 3, shown=shown)
+    test = experiment(4, 2, 3, shown=shown, q_lc=q_lc)
     start = test.model.start(test.prior, test.exact[:, 1], 1)
     later = stereo_pose.process(test.known, start, 0)
     point, velocity = stereo_pose.points_in_view(later, POINTS)
@@ -147,3 +154,15 @@ def test_the_start_is_the_priors_where_nothing_is_seen(slow):
     expected = stereo_pose.process(slow.known, slow.prior, 0)
     point, _ = stereo_pose.points_in_view(state, POINTS)
     np.testing.assert_allclose(point, stereo_pose.points_in_view(expected, POINTS)[0], atol=1e-2)
+
+
+def test_turned_cameras_estimate_as_well(experiment):
+    """NEES by chi-square: 29 errors of 40 runs, after 12 s."""
+    test = experiment(40, 12, 7, q_lc=TURNED)
+    found = test.estimate()
+    error = test.model.difference(test.truth[:, -1], found.state[:, -1])
+    robocentric = test.model.chart(found.state[:, -1])
+    covariance = robocentric @ found.covariance[:, -1] @ np.swapaxes(robocentric, -1, -2)
+    solved = np.linalg.solve(covariance, error[..., None])[..., 0]
+    nees = (error * solved).sum(-1) / 29
+    assert np.median(nees) == pytest.approx(1.0, abs=5 * 1.25 * np.sqrt(2 / 29 / 40))

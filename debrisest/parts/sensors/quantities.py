@@ -15,6 +15,7 @@ QUANTITIES = {
     "focal_spread": Quantity(RUN, "1", "relative 1-sigma of the focal length; 0: calibrated"),
     "focal_source": Quantity(RUN, "", "where the focal length comes from, in words"),
     "baseline": Quantity(RUN, "m", "distance between the cameras"),
+    "camera_q_lc": Quantity(("run", "quaternion"), "1", "attitude of the cameras to the leader"),
     "measured_q_if": Quantity(TIME_QUATERNION, "1", "measured attitude of features or body axes"),
     "q_if_noise": Quantity(TIME, "rad", "1-sigma of its error about each axis; NaN if not known"),
     "focal_px": Quantity(RUN, "px", "focal length"),

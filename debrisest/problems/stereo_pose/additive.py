@@ -33,8 +33,8 @@ from debrisest.problems.stereo_pose.model import (
     measurement,
     points_in_view,
     process,
+    shown_by_points,
 )
-from debrisest.sensors import stereo
 
 _COMPLEX_STEP = 1e-30
 _MOVING = 15
@@ -100,7 +100,7 @@ def measurement_jacobian(known: StereoGeometry, state: Array, k: int) -> Array:
     """Derivative ``(..., m, n)`` of `measurement`: cameras in closed form, the rest by chain."""
     raw, batch, n = known.raw_rotation, state.shape[:-1], state.shape[-1]
     point, velocity = points_in_view(state, known.points, raw)
-    by_view = stereo.jacobian(point, velocity, known.baseline)[..., known.rows, :]
+    by_view = shown_by_points(known, point, velocity)
     rows = by_view.shape[-2]
     by_point, by_velocity = by_view[..., :3], by_view[..., 3:]
     turn = matrix_of_cross(state[..., RATE])[..., None, :, :]

@@ -5,6 +5,7 @@ from typing import Literal
 import numpy as np
 
 from debrisest.arrays import Array, Data
+from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.dynamics import kepler
 from debrisest.problems.stereo_pose.model import (
@@ -63,7 +64,14 @@ def geometry_of(
         baseline=float(data["baseline"][0]),
         shown=shown_of(data, measures),
         raw_rotation=raw,
+        to_camera=_to_camera(data),
     )
+
+
+def _to_camera(data: Data) -> Array | None:
+    if "camera_q_lc" not in data:
+        return None
+    return quaternion.to_matrix(quaternion.conjugate(data["camera_q_lc"][0]))
 
 
 def measured_of(data: Data, shown: Shown) -> Array:

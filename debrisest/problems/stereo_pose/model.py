@@ -53,6 +53,8 @@ class StereoGeometry(NamedTuple):
     baseline: float = 1.0
     shown: Shown = EVERYTHING_OF_CAMERAS
     raw_rotation: bool = False
+    to_camera: Array | None = None
+    """Turns the leader's axes into the cameras', (3, 3); none: these are the same."""
 
     @property
     def times(self) -> Array:
@@ -86,12 +88,13 @@ def stereo_geometry(
     baseline: float = 1.0,
     shown: Shown = EVERYTHING_OF_CAMERAS,
     raw_rotation: bool = False,
+    to_camera: Array | None = None,
 ) -> StereoGeometry:
     """Return the geometry at the clock's epochs (time zero at the true anomaly), SI and rad."""
     epochs = np.arange(len(clock.times))
     times = np.interp(np.arange(2 * len(epochs) - 1) / 2, epochs, clock.times)
     leader = leader_orbit(times, semi_major_axis, eccentricity, true_anomaly)
-    return StereoGeometry(leader, clock.steps, points, baseline, shown, raw_rotation)
+    return StereoGeometry(leader, clock.steps, points, baseline, shown, raw_rotation, to_camera)
 
 
 def process(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
@@ -122,6 +125,24 @@ def points_in_view(
     return state[..., None, POSITION] + arm, velocity
 
 
+def shown_of_points(
+    known: StereoGeometry, point: NDArray[Any], velocity: NDArray[Any]
+) -> NDArray[Any]:
+    """What the cameras show ``(..., rows)`` of points and velocities ``(..., 3)`` in ``l``."""
+    if known.to_camera is not None:
+        point, velocity = point @ known.to_camera.T, velocity @ known.to_camera.T
+    return stereo.measure(point, velocity, known.baseline)[..., known.rows]
+
+
+def shown_by_points(known: StereoGeometry, point: Array, velocity: Array) -> Array:
+    """Derivative ``(..., rows, 6)`` of `shown_of_points` by points and velocities."""
+    turn = known.to_camera
+    if turn is None:
+        return stereo.jacobian(point, velocity, known.baseline)[..., known.rows, :]
+    turned = stereo.jacobian(point @ turn.T, velocity @ turn.T, known.baseline)[..., known.rows, :]
+    return np.concatenate([turned[..., :3] @ turn, turned[..., 3:] @ turn], axis=-1)
+
+
 def target_acceleration(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
     """Angular acceleration of the target ``(..., 3)`` in ``t``, rad/s^2, at epoch ``k``."""
     spin = np.array([0.0, 0.0, float(known.leader.rate[2 * k])])
@@ -132,8 +153,7 @@ def target_acceleration(known: StereoGeometry, state: NDArray[Any], k: int) -> N
 def measurement(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
     """Measurements ``(..., m)`` of epoch ``k``: point by point, then the angular acceleration."""
     point, velocity = points_in_view(state, known.points, known.raw_rotation)
-    shown = stereo.measure(point, velocity, known.baseline)[..., known.rows]
-    rows = shown.reshape(*state.shape[:-1], -1)
+    rows = shown_of_points(known, point, velocity).reshape(*state.shape[:-1], -1)
     if not known.shown.acceleration:
         return rows
     return np.concatenate([rows, target_acceleration(known, state, k)], axis=-1)

@@ -18,9 +18,10 @@ from debrisest.problems.stereo_pose.model import (
     StereoGeometry,
     error_names,
     points_in_view,
+    shown_by_points,
+    shown_of_points,
 )
 from debrisest.problems.stereo_pose.start import first_guess
-from debrisest.sensors import stereo
 
 _TURN = slice(6, 14)
 """Plain errors of rate, attitude and ratios."""
@@ -90,8 +91,8 @@ def point_rows(
     """
     (runs, count), points, each = states.shape[:2], known.points, len(known.rows)
     point, velocity = points_in_view(states, points)
-    shown = stereo.measure(point, velocity, known.baseline)[..., known.rows]
-    by_view = stereo.jacobian(point, velocity, known.baseline)[..., known.rows, :]
+    shown = shown_of_points(known, point, velocity)
+    by_view = shown_by_points(known, point, velocity)
     arm = (point - states[:, :, None, POSITION])[..., None, :]
     by_view = by_view.reshape(runs, count, points * each, 6)
     by_velocity = by_view[..., 3:]

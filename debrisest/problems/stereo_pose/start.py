@@ -39,7 +39,7 @@ def first_guess(
     time = known.steps[:epoch].sum()
     guess, velocity = points_in_view(prior, known.points)
     cloud = _points(known, frame, guess + time * velocity)
-    centre_velocity, rate = _rates(prior, prior_sigma, cloud, frame, noise)
+    centre_velocity, rate = _rates(known, prior, prior_sigma, cloud, frame, noise)
     arms = cloud - cloud.mean(-2, keepdims=True)
     moving = centre_velocity[:, None] + cross(rate[:, None], arms)
     cloud = cloud - time * moving
@@ -71,20 +71,27 @@ def _points(known: StereoGeometry, frame: Array, guess: Array) -> Array:
     y = stereo.depth(frame, known.baseline)
     point = np.stack([frame[..., 0] * y, y, frame[..., 1] * y], axis=-1)
     sound = np.isfinite(point).all(-1) & (y > 0.0)
+    if known.to_camera is not None:
+        point = point @ known.to_camera
     return np.where(sound[..., None], point, guess)
 
 
 def _rates(
-    prior: Array, prior_sigma: Array, cloud: Array, frame: Array, noise: Array
+    known: StereoGeometry,
+    prior: Array,
+    prior_sigma: Array,
+    cloud: Array,
+    frame: Array,
+    noise: Array,
 ) -> tuple[Array, Array]:
     """Velocity of the points' mean and rate, ``(run, 3)`` each, from the flow of both cameras.
 
     Each row of the flow says ``V_across - slope V_y = flow y``, linear in both unknowns.
     """
     slopes, flow = frame[..., stereo.PIXELS], frame[..., stereo.FLOW]
-    y = cloud[..., 1:2]
-    across = np.eye(3)[[0, 2, 0, 2]]
-    direction = across - slopes[..., None] * np.eye(3)[1]
+    camera = np.eye(3) if known.to_camera is None else known.to_camera
+    y = cloud @ camera[1][:, None]
+    direction = camera[[0, 2, 0, 2]] - slopes[..., None] * camera[1]
     arms = cloud - cloud.mean(-2, keepdims=True)
     by_rate = -direction @ matrix_of_cross(arms)
     weight = 1.0 / (noise[..., stereo.FLOW] * np.abs(y))
