@@ -40,3 +40,8 @@ def test_a_folder_where_tables_should_go_is_told_in_one_sentence(
     done = cli("table", small, "--out", swept)
     assert done.exit_code == 2
     assert done.stderr == f"{swept / 'small' / 'tables.csv'}: Is a directory\n"
+
+
+def test_the_shell_completes_commands_and_options(cli: Callable) -> None:
+    told = cli("--show-completion", "bash")
+    assert told.exit_code == 0 and "_DEBRISEST_COMPLETE=complete_bash" in told.stdout

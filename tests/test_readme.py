@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from debrisest.show.tables.verdict import Verdict, verdict
+
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 MEASURED = (ROOT / "docs" / "measured.md").read_text(encoding="utf-8")
@@ -56,10 +58,25 @@ def test_the_published_values_of_the_tables_are_those_of_the_paper() -> None:
     for number in ("1", "2"):
         table = re.search(rf"^Table {number}: .*?\n\n(?=Table)", README, re.M | re.S)
         assert table is not None
-        shown = dict(re.findall(r"^ (\d+|mean) +([\d.]+) ", table[0], re.M))
+        shown = dict(re.findall(r"^ (\d+|mean) +([\d.]+)\*? ", table[0], re.M))
         wanted = {
             row["case"]: row["published"]
             for row in rows
             if row["table"] == number and row["quantity"] == "pitch"
         }
         assert shown == {case: f"{float(value):.3g}" for case, value in wanted.items()}
+
+
+def test_the_signs_of_the_tables_follow_from_their_figures() -> None:
+    """Each verdict, from the figure before it and the published value at the row's begin."""
+    factor = 1.6
+    signs = {Verdict.REPRODUCED: "=", Verdict.BETTER: "<", Verdict.WORSE: ">"}
+    told = 0
+    for number in ("1", "2"):
+        table = re.search(rf"^Table {number}: .*?\n\n(?=Table)", README, re.M | re.S)
+        assert table is not None
+        for published, cells in re.findall(r"^ (?:\d+|mean) +([\d.]+)\*? +(.*)$", table[0], re.M):
+            for figure, sign in re.findall(r"([\d.]+) ([=<>])", cells):
+                assert signs[verdict(float(figure), float(published), factor, 0.0)] == sign
+                told += 1
+    assert told == 12 * 6

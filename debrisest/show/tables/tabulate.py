@@ -47,7 +47,7 @@ def _quantities(scenario: LoadedScenario) -> set[str]:
 
 def chosen(rows: pd.DataFrame, asked: Callable[[str, str], bool]) -> pd.DataFrame:
     """Return the cells whose case and estimator are asked for."""
-    return rows[[asked(*of) for of in zip(rows["case"], rows["estimator"])]]
+    return rows.loc[[asked(*of) for of in zip(rows["case"], rows["estimator"])]]
 
 
 def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> list[str]:

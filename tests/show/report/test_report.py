@@ -198,3 +198,13 @@ def test_an_end_that_the_sample_cannot_give_is_not_drawn() -> None:
     assert page_module._interval({"ci_low": 2.0, "ci_high": None}) == "from 2"
     assert page_module._interval({"ci_low": None, "ci_high": 4.0}) == "up to 4"
     assert page_module._interval({"ci_low": 2.0, "ci_high": 4.0}) == "2 to 4"
+
+
+def test_results_without_a_cell_are_told_in_words(
+    small: Path, tmp_path: Path, cli: Callable
+) -> None:
+    out = ("--out", tmp_path / "out", "--runs", 1)
+    assert cli("simulate", small, *out, "--jobs", 1).exit_code == 0
+    done = cli("report", small, *out, "--to", tmp_path / "report.html")
+    assert done.exit_code == 0, done.output
+    assert "in 0 cells" in (tmp_path / "report.html").read_text(encoding="utf-8")
