@@ -1,4 +1,4 @@
-"""Where the time of a sweep went: CPU seconds by stage and estimator, as its files tell.
+"""Where the time of a sweep went, in Markdown: CPU seconds by stage and estimator, as files tell.
 
 Usage: python scripts/shares.py FOLDER...    (each the results of a scenario, as results/biondi2017)
 
@@ -10,6 +10,7 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+from rich.box import MARKDOWN
 from rich.console import Console
 from rich.table import Table
 
@@ -28,7 +29,8 @@ def shares(folders: list[str]) -> Table:
             seconds[of] += chunk.attributes.get("cpu_s", 0.0)
             runs[of] += chunk.runs
     total = seconds.total() or 1.0
-    table = Table("share", "scenario", "estimator", "stage", "CPU s", "ms per run")
+    columns = ("share", "scenario", "estimator", "stage", "CPU s", "ms per run")
+    table = Table(*columns, box=MARKDOWN)
     large = [(of, spent) for of, spent in seconds.most_common() if spent >= LEAST * total]
     for of, spent in large:
         each = 1e3 * spent / runs[of]
