@@ -1,15 +1,20 @@
 """Errors that are told to a person, without a trace."""
 
 import difflib
+import re
 from collections.abc import Iterable
 
-_CONTROLS = {number: f"\\x{number:02x}" for number in (*range(32), *range(127, 160))}
-_CONTROLS[ord("\n")], _CONTROLS[ord("\t")] = "\n", "\t"
+UNCARRIED = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u180e\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f"
+    "\ud800-\udfff\ufdd0-\ufdef\ufeff\ufff9-\ufffb\ufffe\uffff\U000e0000-\U000e007f]"
+)
+"""Characters that control lines or the direction of writing, or that nobody sees (but for those
+that join letters), and halves that no file can hold."""
 
 
 def printable(text: str) -> str:
-    """Return a text with its control characters written out, and with nothing that has no code."""
-    return text.translate(_CONTROLS).encode(errors="backslashreplace").decode()
+    """Return a text in which what no text can carry is written out."""
+    return UNCARRIED.sub(lambda sign: sign[0].encode("unicode_escape").decode(), text)
 
 
 def meant(given: str, known: Iterable[str]) -> str:

@@ -1,7 +1,10 @@
 """Options of the commands that only write what the results tell."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
+
+import pytest
 
 import debrisest
 
@@ -45,3 +48,20 @@ def test_a_folder_where_tables_should_go_is_told_in_one_sentence(
 def test_the_shell_completes_commands_and_options(cli: Callable) -> None:
     told = cli("--show-completion", "bash")
     assert told.exit_code == 0 and "_DEBRISEST_COMPLETE=complete_bash" in told.stdout
+
+
+@pytest.mark.parametrize("kind", ["pipe", "device"])
+def test_pipes_and_devices_where_tables_should_go_are_not_read(
+    kind: str, small: Path, swept: Path, reference: Path, cli: Callable
+) -> None:
+    cli("table", small, "--out", reference)
+    names = ("tables.csv", "tables.origin.json")
+    for path in (swept / "small" / name for name in names):
+        path.unlink(missing_ok=True)
+        os.mkfifo(path) if kind == "pipe" else path.symlink_to("/dev/full")
+    done = cli("table", small, "--out", swept)
+    table = swept / "small" / "tables.csv"
+    told = f"{table}: this file was not written by debrisest; it is now tables.csv.old\n"
+    assert (done.exit_code, done.stderr) == (0, told)
+    for name in names:
+        assert (swept / "small" / name).read_bytes() == (reference / "small" / name).read_bytes()

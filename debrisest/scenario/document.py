@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from debrisest.scenario.names import UNCARRIED
+from debrisest.errors import UNCARRIED
 
 KeyPath = tuple[str | int, ...]
 MOST_VALUES = 300_000

@@ -113,6 +113,8 @@ def _laid_on(base: Document, over: Document) -> Document:
 
 
 def _read(path: Path) -> str:
+    if path.is_fifo():
+        raise UserError(f"{path}: this is a pipe; give a scenario file (YAML)")
     try:
         with path.open("rb") as file:
             raw = file.read(MOST_BYTES + 1)

@@ -13,10 +13,6 @@ from debrisest.errors import UserError
 MOST_LETTERS = 100
 MOST_LETTERS_OF_A_PART = 50
 """Together with a case's name and a host's it must be a file's name, of 255 bytes at most."""
-UNCARRIED = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
-)
-"""Characters that control lines or the direction of writing, and halves that no file can hold."""
 _TAKEN = ("tables.", "report.", "estimates.")
 _FORMULA = ("=", "+", "-", "@")
 VARIANT = "@"

@@ -1,5 +1,6 @@
 """Names and texts that later stages cannot carry are refused with their place and the reason."""
 
+import os
 import zlib
 from pathlib import Path
 from typing import Any
@@ -31,6 +32,11 @@ REFUSED = {
     "dot_at_the_end": ("  fast: {}", "  fast: {}\n  other.: {}", ["cases.other.: Windows"]),
     "direction": ("made for the tests", "made \u202ef\u202c tests", ["U+202E", "U+202C"]),
     "line_separator": ("    a: {position", '    "a\\u2028b": {position', ["U+2028", ":12:5: "]),
+    "nothing_to_see": ("    a: {position", '    "a\\u200b": {position', ["U+200B", ":12:5: "]),
+    "mark_of_direction": (
+        "title: A small tumbling body", 'title: "\\u061cA\\u200f"', ["U+061C", "U+200F"],
+    ),
+    "tag": ("made for the tests", 'made \U000e0041 for', ["U+E0041", "small.yaml:2:"]),
     "formula": ('table: "2"', 'table: "=HYPERLINK(1)"', ["tables.layout.1.table", "=HYPERLINK"]),
     "mean": ("    mean: [", '    "=1+1": [', ["tables.means.=1+1"]),
     "nul_in_a_path": ("published: small.csv", 'published: "small\\0.csv"', ["U+0000"]),
@@ -88,6 +94,14 @@ def test_devices_and_endless_files_are_no_scenarios(tmp_path: Path, cli: Any) ->
     assert "MB" in result.stderr
 
 
+def test_a_pipe_that_nobody_writes_to_is_no_scenario(tmp_path: Path, cli: Any) -> None:
+    os.mkfifo(pipe := tmp_path / "pipe.yaml")
+    result = cli("validate", pipe)
+    assert (result.exit_code, result.stderr[:-1]) == (
+        2, f"{pipe}: this is a pipe; give a scenario file (YAML)"
+    )  # fmt: skip
+
+
 def test_texts_beyond_the_basic_plane_are_texts(small: Path) -> None:
     import debrisest
 
@@ -97,6 +111,7 @@ def test_texts_beyond_the_basic_plane_are_texts(small: Path) -> None:
 def test_what_is_told_has_no_control_characters() -> None:
     (told,) = UserError("--case \x1b[2J\ud800").problems
     assert told == "--case \\x1b[2J\\ud800"
+    assert UserError("a\u200eb\U000e0041\r\n\tc").problems == ["a\\u200eb\\U000e0041\\r\n\tc"]
 
 
 def test_titles_are_one_line(small: Path) -> None:

@@ -33,6 +33,8 @@ def origin(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> dict[str,
 
 def replaced(path: Path, now: dict[str, Any]) -> str:
     """Return a sentence where a file tells of tables of other settings than those of ``now``."""
+    if not path.is_file():
+        return ""
     try:
         before = json.loads(path.read_text(encoding="utf-8"))["settings"]
     except (OSError, ValueError, KeyError, TypeError):

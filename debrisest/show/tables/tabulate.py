@@ -70,4 +70,7 @@ def write_tables(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> lis
 
 
 def _ours(path: Path, mark: str) -> bool:
-    return not path.exists() or mark.encode() in path.read_bytes()
+    """Return whether nothing is lost with a file; pipes and devices, read from, might not end."""
+    if path.is_file() or path.is_dir():
+        return mark.encode() in path.read_bytes()
+    return not path.exists()
