@@ -34,6 +34,7 @@ class StructureFromMotion(RecoveryPart):
         *("view_rotation", "view_translation", "cloud_point_r", "cloud_seen"),
         *("scale_spread", "reprojection"),
     )
+    version = 2
     libraries = ("cv2", "pycolmap")
     kind: Literal["structure_from_motion"]
 
@@ -75,7 +76,7 @@ def _structure(data: Data, run: int) -> Structure:
 
 def _folder(frames: Frames, rig: Rig) -> Path:
     """Return the folder of these very images in the user's cache."""
-    digest = sha256(np.ascontiguousarray(frames).tobytes())
+    digest = sha256(bytes([StructureFromMotion.version]) + np.ascontiguousarray(frames).tobytes())
     for values in rig:
         digest.update(np.ascontiguousarray(values).tobytes())
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
