@@ -18,6 +18,9 @@ from debrisest.reconstruction.silhouettes import Frames
 
 CAMERAS = "camera"
 RESULT = "structure.npz"
+_INNER_PX = 8
+"""From the outline, three sigma of a usual feature. A feature that reaches beyond the outline moves
+with it, not with the surface: such ones make a body too small."""
 
 
 class Rig(NamedTuple):
@@ -87,8 +90,8 @@ def structure_from_motion(
 ) -> Structure:
     """Return the structure of images (time, camera, row, column) without distortion.
 
-    What is outside of ``masks`` is left out. ``folder`` keeps what is done. Raises ValueError where
-    the images do not hang together, and UserError without COLMAP.
+    What is outside of ``masks``, or next to their outline, is left out. ``folder`` keeps what is
+    done. Raises ValueError where the images do not hang together, and UserError without COLMAP.
     """
     result = folder / RESULT
     if not result.is_file():
@@ -122,12 +125,11 @@ def _prepare(frames: Frames, masks: BoolArray, rig: Rig, folder: Path, how: How 
     cv2 = vision_library("cv2")
     vision_library("pycolmap")
     folder.mkdir(parents=True, exist_ok=True)
+    around = np.ones((2 * _INNER_PX + 1, 2 * _INNER_PX + 1), np.uint8)
     for camera in range(frames.shape[1]):
         for frame in range(len(frames)):
             name = image_name(camera, frame)
-            inner = cv2.erode(
-                masks[frame, camera].astype(np.uint8) * 255, np.ones((5, 5), np.uint8)
-            )
+            inner = cv2.erode(masks[frame, camera].astype(np.uint8) * 255, around)
             for path, image in (
                 (folder / "images" / name, frames[frame, camera]),
                 (folder / "masks" / f"{name}.png", inner),

@@ -35,7 +35,7 @@ class StructureFromMotion(RecoveryPart):
         *("scale_spread", "reprojection"),
         *("found_camera_matrix", "found_lens_distortion", "found_focal_spread"),
     )
-    version = 2
+    version = 3
     libraries = ("cv2", "pycolmap")
     kind: Literal["structure_from_motion"]
     leave_out: Literal["outside_silhouettes", "still_features"] = "outside_silhouettes"
@@ -99,7 +99,7 @@ def _cameras(data: Data, found: list[Structure]) -> Data:
 
 def _folder(frames: Frames, rig: Rig, how: How) -> Path:
     """Return the folder of these very images in the user's cache."""
-    digest = sha256(np.ascontiguousarray(frames).tobytes())
+    digest = sha256(bytes([StructureFromMotion.version]) + np.ascontiguousarray(frames).tobytes())
     for values in (*rig, *how):
         digest.update(np.ascontiguousarray(values).tobytes())
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
