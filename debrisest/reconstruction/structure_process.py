@@ -119,13 +119,16 @@ def _pairs(cameras: int, frames: int) -> list[tuple[str, str]]:
 
 
 def _matches(colmap: Any, folder: Path, database: Path, pairs: list[tuple[str, str]]) -> None:
+    """Match pairs of images; each draws for itself, so that a second attempt finds the same."""
     matching = colmap.FeatureMatchingOptions(num_threads=_threads(), use_gpu=False)
+    verification = colmap.TwoViewGeometryOptions()
+    verification.ransac.random_seed = 1
     done = 0
     for some in _portions(pairs, 5 * _AT_ONCE):
         path = folder / "pairs.txt"
         path.write_text("".join(f"{one} {other}\n" for one, other in some))
         pairing = colmap.ImportedPairingOptions(match_list_path=path)
-        colmap.match_image_pairs(database, matching, pairing)
+        colmap.match_image_pairs(database, matching, pairing, verification)
         done += len(some)
         _tell("pairs of images matched", done, len(pairs))
 
