@@ -148,13 +148,14 @@ def _pairs(cameras: int, frames: int, how: How) -> list[tuple[str, str]]:
 def _matches(
     colmap: Any, folder: Path, database: Path, pairs: list[tuple[str, str]], how: How
 ) -> None:
+    """Match pairs of images; each draws for itself, so that a second attempt finds the same."""
+    matching = colmap.FeatureMatchingOptions(num_threads=_threads(), use_gpu=False)
     verification = colmap.TwoViewGeometryOptions()
+    verification.ransac.random_seed = 1
     if how.leave_out_still:
         verification.filter_stationary_matches = True
         verification.stationary_matches_max_error = _STILL_PX
         verification.ransac.max_error = _OFF_PX
-        verification.ransac.random_seed = 1
-    matching = colmap.FeatureMatchingOptions(num_threads=_threads(), use_gpu=False)
     done = 0
     for some in _portions(pairs, 5 * _AT_ONCE):
         path = folder / "pairs.txt"
