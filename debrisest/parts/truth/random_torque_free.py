@@ -19,6 +19,7 @@ class RandomTorqueFree(SimulationPart):
 
     needs = ("true_inertia_b",)
     truths = ("true_q_ib", "true_rate_b")
+    version = 2
     kind: Literal["random_torque_free"]
     rate_deg_s: Limits[Positive]
     """Limits of the rate at time zero."""

@@ -19,7 +19,7 @@ class TorqueFree(SimulationPart):
 
     needs = ("true_inertia_b",)
     truths = ("true_q_ib", "true_rate_b")
-    version = 2
+    version = 3
     kind: Literal["torque_free"]
     q_ib: UnitQuaternion = [1.0, 0.0, 0.0, 0.0]
     """Attitude at time zero."""
