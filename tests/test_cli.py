@@ -5,8 +5,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import debrisest
+from debrisest.cli import app
 
 
 def test_quiet_writes_the_tables_and_tells_what_is_unexpected(
@@ -45,9 +47,18 @@ def test_a_folder_where_tables_should_go_is_told_in_one_sentence(
     assert done.stderr == f"{swept / 'small' / 'tables.csv'}: Is a directory\n"
 
 
-def test_the_shell_completes_commands_and_options(cli: Callable) -> None:
-    told = cli("--show-completion", "bash")
-    assert told.exit_code == 0 and "_DEBRISEST_COMPLETE=complete_bash" in told.stdout
+def test_the_shell_completes_commands_and_options() -> None:
+    for asked, told in (
+        ({"_DEBRISEST_COMPLETE": "source_bash"}, "_DEBRISEST_COMPLETE=complete_bash"),
+        ({"_DEBRISEST_COMPLETE": "complete_bash"} | words("debrisest sw"), "sweep"),
+        ({"_DEBRISEST_COMPLETE": "complete_bash"} | words("debrisest sweep --re"), "--report"),
+    ):
+        done = CliRunner().invoke(app, [], prog_name="debrisest", env=asked)
+        assert told in done.stdout
+
+
+def words(typed: str) -> dict[str, str]:
+    return {"COMP_WORDS": typed, "COMP_CWORD": str(len(typed.split()) - 1)}
 
 
 @pytest.mark.parametrize("kind", ["pipe", "device"])

@@ -89,7 +89,7 @@ def test_one_camera_gives_pixels_of_the_same_body(rendered: Path, tmp_path: Path
 def test_pixels_are_those_of_the_images_before_they_were_reduced(rendered: Path) -> None:
     images = read_images(rendered / "left")
     whole, half = (
-        pixel_tracks(each, np.arange(8.0), lambda _: None).tracks.pixels
+        pixel_tracks(each, np.arange(8.0)).tracks.pixels
         for each in (images, images._replace(reduced=0.5))
     )
     assert whole is not None and half is not None
