@@ -73,8 +73,8 @@ def table(
         if scenario.variant:
             print(f"these tables are of {out / scenario.name}", file=sys.stderr)
         elif names := _variants(scenario, out):
-            told = f"{scenario.path}: there are variants too: {' '.join(names)}; their --set"
-            print(f"{told} (or --set and --variant NAME) shows one", file=sys.stderr)
+            told = f"{scenario.path}: there are variants too: {' '.join(names)}; show one with"
+            print(f"{told} the --set and --variant that it was made with", file=sys.stderr)
     exit_if(wrong)
 
 

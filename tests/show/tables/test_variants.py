@@ -39,7 +39,7 @@ def test_settings_without_a_name_replace_nothing(small: Path, swept: Path, sweep
         cli("table", small, "--out", swept, *SLOW, *options, "--format", "csv")
         for options in ((), changed, (*changed, "--variant", name))
     )
-    assert f"there are variants too: {name}; their --set" in plain.stderr
+    assert f"there are variants too: {name}; show one with" in plain.stderr
     assert derived.stderr == named.stderr
     assert derived.stderr.endswith(f"these tables are of {swept / f'small@{name}'}\n")
     assert len(plain.stdout.splitlines()) == len(derived.stdout.splitlines()) > 1
