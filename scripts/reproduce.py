@@ -2,8 +2,9 @@
 
 Usage: python scripts/reproduce.py [SEED ...]    (default: each scenario's own seed, and 2)
 
-Results go to results/seed-N. At the end stands, for each cell with a published value, whether
-its verdict is the same under all seeds. The exit code is 1 where a verdict is not as expected.
+Results go to results/seed-N, in folders SCENARIO@seed=N. At the end stands, for each cell with a
+published value, whether its verdict is the same under all seeds. The exit code is 1 where a verdict
+is not as expected.
 """
 
 import subprocess
@@ -31,13 +32,17 @@ def sweep(seed: str) -> tuple[Path, int]:
     return out, code
 
 
+def _name(config: Path, seed: str) -> str:
+    return config.stem if seed == "own" else f"{config.stem}@seed={seed}"
+
+
 def main(seeds: list[str]) -> int:
     """Run all seeds, compare their verdicts, and return the largest exit code."""
     swept = {seed: sweep(seed) for seed in seeds}
     folders = {seed: folder for seed, (folder, _) in swept.items()}
     for config in CONFIGS:
         tables = {
-            seed: pd.read_csv(folder / config.stem / "tables.csv").set_index(KEY)
+            seed: pd.read_csv(folder / _name(config, seed) / "tables.csv").set_index(KEY)
             for seed, folder in folders.items()
         }
         verdicts = pd.DataFrame({seed: table["verdict"] for seed, table in tables.items()})

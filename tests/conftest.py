@@ -16,6 +16,8 @@ from debrisest.catalog import CATALOG
 from debrisest.cli import app
 from debrisest.plugins import load
 from debrisest.results import store
+from debrisest.scenario.document import Place, merge, nested, text_of
+from debrisest.scenario.document import parse as document_of
 from debrisest.vocabulary import VOCABULARY
 
 SCENARIOS = Path(__file__).parent / "scenarios"
@@ -61,6 +63,23 @@ def sweep(cli: Callable) -> Callable:
         return cli("sweep", config, "--out", out, "--jobs", 1, *options)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def rewrite() -> Callable:
+    """Write settings into a scenario's file, in place, as ``--set`` would lay them on it."""
+
+    def write(config: Path, *settings: str) -> Path:
+        document, _ = document_of(config.read_text(), str(config))
+        for setting in settings:
+            key, _, value = setting.partition("=")
+            given = document_of(f"value: {value}", "")[0].value["value"]
+            laid = nested(tuple(key.split(".")), given, Place(""))
+            document = merge(document, laid)
+        config.write_text(text_of(document.value))
+        return config
+
+    return write
 
 
 @pytest.fixture(scope="session")

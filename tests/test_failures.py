@@ -198,10 +198,10 @@ def test_a_file_that_cannot_be_written(
 
 
 def test_an_old_file_does_not_hide_a_step_that_failed(
-    small: Path, swept: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
+    small: Path, swept: Path, sweep: Callable, rewrite: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(store, "write", no_room)
-    assert sweep(small, swept, *ONE, "--set", "seed=8").exit_code == 1
+    assert sweep(rewrite(small, "seed=8"), swept, *ONE).exit_code == 1
 
 
 def test_a_damaged_file_that_cannot_be_replaced(
@@ -214,14 +214,15 @@ def test_a_damaged_file_that_cannot_be_replaced(
 
 
 def test_a_diverged_run_is_a_value(
-    swept: Path, small: Path, reference: Path, sweep: Callable, data_of: Callable
-) -> None:
+    swept: Path, small: Path, reference: Path, sweep: Callable, data_of: Callable,
+    rewrite: Callable,
+) -> None:  # fmt: skip
     """A limit between the runs' errors makes those above it diverge, and leaves the others."""
     data = data_of(reference, "assess-triad*")["small/fast/assess-triad.000000.h5"]
     rms = np.degrees(np.sqrt(np.mean(data["rate"][:, 40:] ** 2, axis=1)))
     limit = float(np.sort(rms)[1:].mean())
     setting = f"tables.diverged=[{{quantity: rate, above: {limit}, window: 40-60 s}}]"
-    result = sweep(small, swept, "--set", setting)
+    result = sweep(rewrite(small, setting), swept)
     assert result.exit_code == 0
     rows = cells(swept)
     mine = rows[(rows["case"] == "fast") & (rows["estimator"] == "triad")]
@@ -235,10 +236,10 @@ def test_a_diverged_run_is_a_value(
 
 
 def test_an_estimate_that_is_not_finite_is_a_value(
-    small: Path, tmp_path: Path, sweep: Callable
+    small: Path, tmp_path: Path, sweep: Callable, rewrite: Callable
 ) -> None:
     setting = "estimators.triad.start.variance.rate_rad2_s2=1e300"
-    result = sweep(small, tmp_path / "out", *ONE, "--set", setting)
+    result = sweep(rewrite(small, setting), tmp_path / "out", *ONE)
     assert result.exit_code == 0, result.stderr
     rows = cells(tmp_path / "out")
     after = rows[rows["table"] == "2"]

@@ -165,7 +165,7 @@ def test_two_sweeps_in_one_folder(
     small: Path, swept: Path, sweep: Callable, start: Callable
 ) -> None:
     holder, _ = start(HOLDS, swept / "small")
-    done = sweep(small, swept, "--set", "seed=8")
+    done = sweep(small, swept, "--force")
     assert (done.exit_code, done.stdout) == (2, "")
     (told,) = done.stderr.splitlines()
     assert f"{swept / 'small'}: process {holder.pid}" in told

@@ -24,7 +24,7 @@ def other(tmp_path_factory: pytest.TempPathFactory, sweep: Callable, shipped: Pa
     out = tmp_path_factory.mktemp("other")
     config = shipped.parent / "tests" / "scenarios" / "small.yaml"
     assert sweep(config, out, "--set", "seed=8").exit_code == 0
-    return out / "small" / "slow"
+    return out / "small@seed=8" / "slow"
 
 
 @pytest.mark.parametrize("name", NAMES[:3])

@@ -76,8 +76,9 @@ def test_a_killed_worker_is_told_in_words(small: Path, tmp_path: Path, process: 
 
 @pytest.mark.parametrize("moment", ["running", "tables"])
 def test_no_half_written_table_replaces_a_table(
-    moment: str, swept: Path, small: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    moment: str, swept: Path, small: Path, sweep: Callable, rewrite: Callable,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
     from debrisest.results import store
     from debrisest.show.tables import cells
 
@@ -89,7 +90,7 @@ def test_no_half_written_table_replaces_a_table(
     else:
         monkeypatch.setattr(cells.pd.DataFrame, "to_csv", fail)
     before = {path: path.read_bytes() for path in swept.rglob("tables.*")}
-    result = sweep(small, swept, "--set", "seed=8")
+    result = sweep(rewrite(small, "seed=8"), swept)
     assert result.exit_code == 130 or moment == "tables"
     assert {path: path.read_bytes() for path in swept.rglob("tables.*")} == before
 
@@ -283,14 +284,14 @@ def test_fewer_runs_give_the_tables_of_a_direct_sweep(
 # changes
 
 
-FILTER = ("--set", "estimators.triad.filter.alpha=0.9")
+FILTER = "estimators.triad.filter.alpha=0.9"
 
 
 def test_a_filter_parameter_runs_filter_and_assess_again(
-    swept: Path, small: Path, sweep: Callable
+    swept: Path, small: Path, sweep: Callable, rewrite: Callable
 ) -> None:
-    before, content = states(swept), tables(swept)
-    dry = sweep(small, swept, *FILTER, "--dry-run")
+    before, content, text = states(swept), tables(swept), small.read_text()
+    dry = sweep(rewrite(small, FILTER), swept, "--dry-run")
     assert dry.exit_code == 0
     assert dry.stdout.splitlines() == [
         "small slow: filter triad, runs 0-2: filter.alpha was 1.0, is 0.9",
@@ -300,7 +301,7 @@ def test_a_filter_parameter_runs_filter_and_assess_again(
         "4 of 14 steps would run",
     ]
     assert (states(swept), tables(swept)) == (before, content)
-    result = sweep(small, swept, *FILTER)
+    result = sweep(small, swept)
     assert ran(result) == [
         f"{case}: {stage} triad" for case in ("slow", "fast") for stage in ("filter", "assess")
     ]
@@ -308,6 +309,7 @@ def test_a_filter_parameter_runs_filter_and_assess_again(
     assert len(changed) == 4
     assert all("filter-triad" in name or "assess-triad" in name for name in changed)
     assert tables(swept) != content
+    small.write_text(text)
     assert len(ran(sweep(small, swept))) == 4
     assert tables(swept) == content
 
@@ -327,10 +329,10 @@ CHANGES = {
 
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_change_runs_what_depends_on_it(
-    name: str, swept: Path, small: Path, sweep: Callable
+    name: str, swept: Path, small: Path, sweep: Callable, rewrite: Callable
 ) -> None:
     setting, steps, reason = CHANGES[name]
-    dry = sweep(small, swept, "--dry-run", "--set", setting)
+    dry = sweep(rewrite(small, setting), swept, "--dry-run")
     assert dry.stdout.splitlines()[-1] == f"{steps} of 14 steps would run"
     assert reason in dry.stdout
 

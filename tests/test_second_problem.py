@@ -226,11 +226,11 @@ def test_from_a_file_to_a_table(config: Path, tmp_path: Path, sweep: Callable) -
 
 @pytest.mark.parametrize(("factor", "words"), [(0.8, "over-confident"), (1.25, "over-cautious")])
 def test_a_mistuned_filter_is_told_in_words(
-    factor: float, words: str, config: Path, tmp_path: Path, sweep: Callable
+    factor: float, words: str, config: Path, tmp_path: Path, sweep: Callable, rewrite: Callable
 ) -> None:
     """A filter that takes its angles for too good or too bad; a problem need not judge itself."""
     noise = f"estimators.line.problem.angle_noise_deg={factor * np.degrees(NOISE / RADIUS)}"
-    result = sweep(config, tmp_path / "out", "--set", noise)
+    result = sweep(rewrite(config, noise), tmp_path / "out")
     rows = pd.read_csv(StringIO((tmp_path / "out" / "wheel" / "tables.csv").read_text()))
     nis = rows[rows["quantity"] == "nis"].iloc[0]
     assert nis["verdict"] == words

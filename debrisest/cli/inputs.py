@@ -14,22 +14,28 @@ def load_all(
     settings: Sequence[str] | None,
     plugins: Sequence[Path] | None,
     variant: str | None = None,
+    keep: str | None = None,
 ) -> list["LoadedScenario"]:
-    """Return all scenarios, or raise UserError with the problems of all of them at once."""
+    """Return all scenarios, or raise UserError with the problems of all of them at once.
+
+    With settings each is a variant, by its given name or one derived from them.
+    """
     from debrisest.errors import UserError
     from debrisest.plugins.load import load_plugins, read_plugins
     from debrisest.scenario.load import load_scenario
+    from debrisest.scenario.variant import variant_of
     from debrisest.shipped import scenario_path
     from debrisest.show.tables.published import check_published
 
     if variant is not None:
         _check_variant(variant)
+    laid_on = [*(settings or ()), *([f"keep={keep}"] if keep else [])]
     own_parts = read_plugins(plugins or ())
     load_plugins(own_parts)
     scenarios, problems = [], []
     for config in configs:
         try:
-            scenarios.append(load_scenario(scenario_path(config), settings or (), own_parts))
+            scenarios.append(load_scenario(scenario_path(config), laid_on, own_parts))
             check_published(scenarios[-1])
         except UserError as error:
             problems += error.problems
@@ -41,7 +47,8 @@ def load_all(
     ]
     if problems:
         raise UserError(problems)
-    return [one.called(variant) for one in scenarios] if variant else scenarios
+    name = variant or variant_of(settings or ())
+    return [one.called(name) for one in scenarios] if name else scenarios
 
 
 def _check_variant(name: str) -> None:

@@ -36,7 +36,8 @@ Settings = Annotated[
     list[str] | None, Option("--set", help="key.path=value, laid on every case (repeatable).")
 ]
 Variant = Annotated[
-    str | None, Option("--variant", help="Keep these results apart, in DIR/SCENARIO@NAME.")
+    str | None,
+    Option("--variant", help="Keep results in DIR/SCENARIO@NAME (with --set by default)."),
 ]
 Plugins = Annotated[
     list[Path] | None,

@@ -68,7 +68,25 @@ def table(
     """Write and print the tables of the results that are up to date."""
     scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
-    exit_if(show_tables(scenarios, out, selection, None if quiet else form, check))
+    wrong = show_tables(scenarios, out, selection, None if quiet else form, check)
+    for scenario in scenarios:
+        if scenario.variant:
+            print(f"these tables are of {out / scenario.name}", file=sys.stderr)
+        elif names := _variants(scenario, out):
+            told = f"{scenario.path}: there are variants too: {' '.join(names)}; show one with"
+            print(f"{told} the --set and --variant that it was made with", file=sys.stderr)
+    exit_if(wrong)
+
+
+def _variants(scenario: "LoadedScenario", out: Path) -> list[str]:
+    """Return the names of the variants of a scenario that have tables."""
+    from debrisest.scenario.names import VARIANT
+
+    if not out.is_dir():
+        return []
+    start = f"{scenario.name}{VARIANT}"
+    folders = (path for path in out.iterdir() if (path / "tables.csv").is_file())
+    return sorted(path.name.removeprefix(start) for path in folders if path.name.startswith(start))
 
 
 def plot(

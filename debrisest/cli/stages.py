@@ -63,7 +63,7 @@ def _command(last_stage: str, help: str) -> Callable[..., None]:
         cluster: Cluster = None,
         quiet: Quiet = False,
     ) -> None:
-        scenarios = computable(load_all(configs, _with_keep(settings, keep), plugins, variant))
+        scenarios = computable(load_all(configs, settings, plugins, variant, keep))
         selection = select(scenarios, runs, case, estimator, last_stage, force)
         selection = _with_lost(selection, scenarios, out) if rerun_failed else selection
         exit_if(bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run))
@@ -101,7 +101,7 @@ def sweep(
         from debrisest.show.report.page import environment
 
         environment()
-    scenarios = computable(load_all(configs, _with_keep(settings, keep), plugins, variant))
+    scenarios = computable(load_all(configs, settings, plugins, variant, keep))
     selection = select(scenarios, runs, case, estimator, force=force)
     selection = _with_lost(selection, scenarios, out) if rerun_failed else selection
     failed = bring(scenarios, out, selection, _machine(jobs, cluster, quiet), dry_run)
@@ -116,10 +116,6 @@ def sweep(
             asked = [*map(str, configs), "--out", str(out), *of_runs, *changed]
             print(f"to look at it: {shlex.join(['debrisest', 'report', *asked])}", file=sys.stderr)
         exit_if(wrong or failed)
-
-
-def _with_keep(settings: Sequence[str] | None, keep: str | None) -> list[str]:
-    return [*(settings or ()), *([f"keep={keep}"] if keep else [])]
 
 
 def _with_lost(
@@ -141,6 +137,15 @@ def _machine(jobs: int | None, cluster: str | None, quiet: bool) -> "Machine":
     return Machine(jobs or os.cpu_count() or 1, cluster, quiet)
 
 
+def _tell_where(scenarios: Sequence["LoadedScenario"], out: Path) -> None:
+    """Tell of variants where their results go."""
+    first = scenarios[0]
+    if first.variant:
+        more = f" (and {len(scenarios) - 1} more)" if len(scenarios) > 1 else ""
+        plain = "table without --set and --variant still shows the unchanged scenario"
+        print(f"these results go to {out / first.name}{more}; {plain}", file=sys.stderr)
+
+
 def bring(
     scenarios: Sequence["LoadedScenario"],
     out: Path,
@@ -153,6 +158,7 @@ def bring(
     from debrisest.runner.plan import plan
     from debrisest.runner.sweep import bring_up_to_date
 
+    _tell_where(scenarios, out)
     if dry_run:
         steps = [step for scenario in scenarios for step in plan(scenario, out, selection)]
         due = [step for step in steps if step.reason]

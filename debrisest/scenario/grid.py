@@ -1,15 +1,14 @@
 """The points of a scenario's grid: what each is called, and which of them are one truth."""
 
 import itertools
-import re
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 from debrisest.scenario.document import Document, merge, nested
+from debrisest.scenario.names import UNNAMED
 
 NOT_SIMULATED = ("estimators", "tables")
 """What a grid can vary without another simulation."""
-_UNNAMED = re.compile(r"[^A-Za-z0-9_.+=,-]")
 
 Grid = dict[str, list[Any]]
 
@@ -50,7 +49,7 @@ def _labels(grid: Grid) -> dict[str, list[str]]:
     """Return what names say of each value of each key."""
     return {
         key: [
-            _UNNAMED.sub("", f"{_short(key, grid)}={_text(value, index, values)}")
+            UNNAMED.sub("", f"{_short(key, grid)}={_text(value, index, values)}")
             for index, value in enumerate(values)
         ]
         for key, values in grid.items()

@@ -13,6 +13,8 @@ from debrisest.errors import UserError
 MOST_LETTERS = 100
 MOST_LETTERS_OF_A_PART = 50
 """Together with a case's name and a host's it must be a file's name, of 255 bytes at most."""
+UNNAMED = re.compile(r"[^A-Za-z0-9_.+=,-]")
+"""What no name of a case or variant has."""
 _TAKEN = ("tables.", "report.", "estimates.")
 _FORMULA = ("=", "+", "-", "@")
 VARIANT = "@"

@@ -44,9 +44,10 @@ def test_what_they_do_and_what_is_stored(
     config: Path, options: tuple, tmp_path: Path, sweep: Callable
 ) -> None:
     same = "estimators.triad.recovery.attitude=wahba"
-    done = sweep(config, tmp_path / "out", "--set", same, "--case", "slow", *options)
+    changed = ("--set", same, "--variant", "same")
+    done = sweep(config, tmp_path / "out", *changed, "--case", "slow", *options)
     assert done.exit_code == 0, done.stderr
-    folder = tmp_path / "out" / "small" / "slow"
+    folder = tmp_path / "out" / "small@same" / "slow"
     seen = store.read(folder / "simulate.000000.h5")
     lost = np.isnan(seen["measured_point"]).any(axis=-1).mean(axis=-1)
     assert np.array_equal(seen["fading"], lost)

@@ -34,10 +34,10 @@ def test_all_is_up_to_date(small: Path, reference: Path) -> None:
 
 
 def test_a_change_is_told_as_a_dry_run_tells_it(
-    small: Path, reference: Path, sweep: Callable
+    small: Path, reference: Path, sweep: Callable, rewrite: Callable
 ) -> None:
-    row = rows(small, reference, *CHANGED)["triad"]
-    dry = sweep(small, reference, "--set", *CHANGED, "--dry-run", "--case", "slow")
+    row = rows(rewrite(small, *CHANGED), reference)["triad"]
+    dry = sweep(small, reference, "--dry-run", "--case", "slow")
     assert list(row.due) == dry.stdout.splitlines()[:-1]
     assert list(row.lines())[:2] == [
         "small slow, triad: 3 runs there, 3 wanted, out of date",
@@ -72,11 +72,11 @@ def test_failed_runs_are_counted_with_their_reason(
 
 
 def test_diverged_runs_are_counted_in_the_words_of_the_filter(
-    small: Path, tmp_path: Path, sweep: Callable
+    small: Path, tmp_path: Path, sweep: Callable, rewrite: Callable
 ) -> None:
-    setting = "estimators.triad.start.variance.rate_rad2_s2=1e300"
-    sweep(small, tmp_path / "out", "--case", "slow", "--set", setting)
-    ended = rows(small, tmp_path / "out", setting)["triad"].ended
+    rewrite(small, "estimators.triad.start.variance.rate_rad2_s2=1e300")
+    sweep(small, tmp_path / "out", "--case", "slow")
+    ended = rows(small, tmp_path / "out")["triad"].ended
     diverged = [(how, runs) for how, runs in ended.items() if "diverged" in how]
     assert [runs for _, runs in diverged] == [3]
 
@@ -101,10 +101,13 @@ def test_a_stage_with_a_gap_is_not_complete(small: Path, tmp_path: Path, sweep: 
     assert complete.stages("slow", "triad") == ["recover"]
 
 
-def test_the_command_tells_it_and_writes_nothing(small: Path, swept: Path, cli: Callable) -> None:
+def test_the_command_tells_it_and_writes_nothing(
+    small: Path, swept: Path, cli: Callable, rewrite: Callable
+) -> None:
+    rewrite(small, *CHANGED)
     (swept / "small" / "slow" / "notes.h5").write_text("mine")
     before = {path: path.stat().st_mtime_ns for path in swept.rglob("*")}
-    done = cli("status", small, "--out", swept, "--set", *CHANGED)
+    done = cli("status", small, "--out", swept)
     assert done.exit_code == 0
     assert "small fast, triad: 3 runs there, 3 wanted, out of date" in done.stdout
     assert "small fast, wahba: 3 runs there, 3 wanted, up to date" in done.stdout

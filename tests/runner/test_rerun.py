@@ -65,7 +65,7 @@ def test_later_runs_of_a_grid_with_overrides(
     assert sweep(small, tmp_path / "out", *some, "--case", CASE).exit_code == 0
     small.unlink()
     for stage in ("simulate", "assess-triad"):
-        path = tmp_path / "out" / "small" / CASE / f"{stage}.000020.h5"
+        path = tmp_path / "out" / "small@seed=12" / CASE / f"{stage}.000020.h5"
         told = cli("rerun", path)
         assert told.exit_code == 0, told.output
         assert f"{path}: same bytes" in told.stdout

@@ -37,7 +37,10 @@ def test_a_failed_run_is_tried_again(
     assert sweep(small, tmp_path, *ONE, "--rerun-failed", "--dry-run").stdout.startswith("0 of 7")
 
 
-def test_runs_that_diverged_are_filtered_again(small: Path, swept: Path, sweep: Callable) -> None:
-    asked = (*ONE, "--estimator", "wahba", "--set", LIMITED, "--rerun-failed", "--dry-run")
+def test_runs_that_diverged_are_filtered_again(
+    small: Path, swept: Path, sweep: Callable, rewrite: Callable
+) -> None:
+    rewrite(small, LIMITED)
+    asked = (*ONE, "--estimator", "wahba", "--rerun-failed", "--dry-run")
     dry = sweep(small, swept, *asked).stdout
     assert would_run(dry) == ["small slow: filter wahba", "small slow: assess wahba"]

@@ -101,7 +101,7 @@ def test_a_room_that_stands_still_is_left_out(config: Path, tmp_path: Path) -> N
     options = [part for each in room for part in ("--set", each)]
     code, said = run("render", config, "--out", tmp_path, "--quiet", *options)
     assert code == 0, said
-    images = tmp_path / "box" / "nominal" / "images-000000"
+    images = next(tmp_path.glob("box@*")) / "nominal" / "images-000000"
     code, said = run("track", images, "--out", tmp_path / "tracks", "--quiet")
     assert code == 0, said
     tracks = read_measured(tmp_path / "tracks" / "tracks.csv")

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
+import pytest
 
 SLOW = ("--case", "slow", "--estimator", "wahba")
 
@@ -22,6 +23,37 @@ def test_a_variant_has_a_folder_of_its_own(small: Path, swept: Path, sweep, cli)
     compared = cli("compare", swept / "small", swept / "small@drawn-once").stdout
     assert "estimators.wahba.filter.redraw: True -> False" in compared
     assert "paired: the same data" in compared
+
+
+def test_settings_without_a_name_replace_nothing(small: Path, swept: Path, sweep, cli) -> None:
+    before = (swept / "small" / "tables.csv").read_bytes()
+    changed = ("--set", "seed=8", "--set", "estimators.wahba.filter.redraw=false")
+    name = "estimators.wahba.filter.redraw=false,seed=8"
+    done = sweep(small, swept, *SLOW, *changed)
+    assert done.exit_code == 0
+    assert f"these results go to {swept / f'small@{name}'}; table without --set" in done.stderr
+    assert (swept / "small" / "tables.csv").read_bytes() == before
+    turned = sweep(small, swept, *SLOW, *changed[2:], *changed[:2], "--dry-run").stdout
+    assert turned.startswith("0 of ")
+    plain, derived, named = (
+        cli("table", small, "--out", swept, *SLOW, *options, "--format", "csv")
+        for options in ((), changed, (*changed, "--variant", name))
+    )
+    assert f"there are variants too: {name}; show one with" in plain.stderr
+    assert derived.stderr == named.stderr
+    assert derived.stderr.endswith(f"these tables are of {swept / f'small@{name}'}\n")
+    assert len(plain.stdout.splitlines()) == len(derived.stdout.splitlines()) > 1
+    assert plain.stdout != derived.stdout == named.stdout
+
+
+@pytest.mark.parametrize("command", ["simulate", "recover", "filter"])
+def test_every_command_has_the_same_folder(
+    command: str, small: Path, tmp_path: Path, cli: Callable
+) -> None:
+    asked = ("--out", tmp_path, *SLOW, "--set", "seed=8")
+    assert cli(command, small, *asked, "--jobs", 1, "--runs", 1, "--keep", "all").exit_code == 0
+    assert [path.name for path in tmp_path.glob("small*/")] == ["small@seed=8"]
+    assert "1 runs there" in cli("status", small, *asked).stdout
 
 
 def test_the_same_settings_give_the_same_bytes_under_another_name(
@@ -48,13 +80,15 @@ def test_tables_tell_where_they_come_from(swept: Path) -> None:
 
 
 def test_tables_that_replace_others_are_told(
-    small: Path, swept: Path, sweep: Callable, cli: Callable
+    small: Path, swept: Path, sweep: Callable, cli: Callable, rewrite: Callable
 ) -> None:
     assert cli("table", small, "--out", swept).stderr == ""
     fewer = cli("table", small, "--out", swept, "--runs", 2).stderr
     assert "these tables replace others (runs was 3, is 2); --variant NAME keeps both" in fewer
     assert "replace" in cli("table", small, "--out", swept).stderr
-    done = sweep(small, swept, *SLOW, "--set", "sensors.points.noise_m=0.02")
+    text = small.read_text()
+    done = sweep(rewrite(small, "sensors.points.noise_m=0.02"), swept, *SLOW)
     assert "sensors.points.noise_m was 0.01, is 0.02" in done.stderr
+    small.write_text(text)
     (swept / "small" / "tables.origin.json").write_text("[]")
     assert "replace" not in cli("table", small, "--out", swept).stderr
