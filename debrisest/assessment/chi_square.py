@@ -3,16 +3,16 @@
 from typing import Any
 
 import numpy as np
-from scipy.special import chdtri, gammaincinv
+import scipy
 
 from debrisest.arrays import Array
 
 
 def quantile(probability: Any, dof: Any) -> Array:
     """Value that is above a chi-square of ``dof`` degrees of freedom with a probability."""
-    return np.asarray(2.0 * gammaincinv(0.5 * np.asarray(dof), probability))
+    return np.asarray(2.0 * scipy.special.gammaincinv(0.5 * np.asarray(dof), probability))
 
 
 def upper_quantile(probability: Any, dof: Any) -> Array:
     """Value that is below it with a probability."""
-    return np.asarray(chdtri(dof, probability))
+    return np.asarray(scipy.special.chdtri(dof, probability))

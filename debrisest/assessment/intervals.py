@@ -38,17 +38,17 @@ def with_interval(name: str, groups: list[Array]) -> tuple[float, float, float]:
     """
     if not groups or any(len(group) == 0 for group in groups):
         return (np.nan, np.nan, np.nan)
-    measured = float(np.mean([STATISTICS[name].over_runs(group) for group in groups]))
-    return (measured, *_ends(name, groups, measured))
+    middle = np.array([STATISTICS[name].over_runs(group) for group in groups])
+    return (float(np.mean(middle)), *_ends(name, groups, middle))
 
 
-def _ends(name: str, groups: list[Array], measured: float) -> tuple[float, float]:
+def _ends(name: str, groups: list[Array], middle: Array) -> tuple[float, float]:
     if not all(np.isfinite(group).all() for group in groups):
         return np.nan, np.nan
     if name in PERCENTILES:
-        return _joined(lambda group: _of_quantile(group, PERCENTILES[name]), name, groups)
+        return _joined(lambda group: _of_quantile(group, PERCENTILES[name]), middle, groups)
     if name in _SHARES and all(np.isin(group, (0.0, 1.0)).all() for group in groups):
-        return _joined(_of_proportion, name, groups)
+        return _joined(_of_proportion, middle, groups)
     mean, half = reach(averaged([spread(name, group) for group in groups]))
     if any(np.min(group) <= 0 for group in groups):
         return mean - half, mean + half
@@ -56,13 +56,12 @@ def _ends(name: str, groups: list[Array], measured: float) -> tuple[float, float
 
 
 def _joined(
-    ends: Callable[[Array], tuple[float, float]], name: str, groups: list[Array]
+    ends: Callable[[Array], tuple[float, float]], middle: Array, groups: list[Array]
 ) -> tuple[float, float]:
-    """Ends of the mean of independent groups: their distances from the middle add in squares.
+    """Ends of the mean of independent groups: their distances from the middles add in squares.
 
     Zou and Donner, "Construction of confidence limits about effect measures", 2008.
     """
-    middle = np.array([STATISTICS[name].over_runs(group) for group in groups])
     low, high = np.transpose([ends(group) for group in groups])
     below, above = np.linalg.norm(middle - low), np.linalg.norm(high - middle)
     centre, count = np.mean(middle), len(groups)

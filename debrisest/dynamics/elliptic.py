@@ -6,14 +6,14 @@ complement ``1 - m`` is given, which a body that tumbles near its separatrix has
 """
 
 import numpy as np
-from scipy.special import ellipkm1
+import scipy
 
 from debrisest.arrays import Array
 
 
 def quarter_period(complement: Array) -> Array:
     """Complete integral ``K`` for the complementary parameter ``1 - m``."""
-    return np.asarray(ellipkm1(complement))
+    return np.asarray(scipy.special.ellipkm1(complement))
 
 
 def elliptic(argument: Array, complement: Array) -> tuple[Array, Array, Array]:

@@ -4,7 +4,7 @@ from copy import copy
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import gammainccinv
+import scipy
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.linear_algebra import solve
@@ -122,7 +122,7 @@ class Gatekeeper:
 def chi_square_limits(false_alarm: float, size: int) -> Array:
     """Limits (size + 1,) of the squares of groups of 0 to `size` components; infinite for 0."""
     dof = np.arange(1, size + 1)
-    return np.concatenate([[np.inf], 2.0 * gammainccinv(0.5 * dof, false_alarm)])
+    return np.concatenate([[np.inf], 2.0 * scipy.special.gammainccinv(0.5 * dof, false_alarm)])
 
 
 def group_squares(present: BoolArray, innovation: Array, total: Array) -> Array:

@@ -7,8 +7,7 @@ closest points, and the nearest one stays. Principal moments alone would hide ex
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
-from scipy.spatial.transform import Rotation
+import scipy
 
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude.rotation import nearest_rotation
@@ -59,7 +58,7 @@ def align(
     )
     points = surface_points(vertices, triangles) - ours.centre
     goal = surface_points(reference, reference_triangles) - theirs.centre
-    tree = cKDTree(goal)
+    tree = scipy.spatial.cKDTree(goal)
     onto = np.linalg.eigh(theirs.inertia)[1]
     back = principal_axes(ours.inertia)[1].T
     starts = [onto @ turn @ np.linalg.eigh(ours.inertia)[1].T for turn in _turns(onto, back)]
@@ -71,12 +70,14 @@ def align(
 
 def _turns(onto: Array, back: Array) -> list[Array]:
     """Return the 24 exchanges of axes with signs that make each start a proper rotation."""
-    octahedral = Rotation.create_group("O").as_matrix()
+    octahedral = scipy.spatial.transform.Rotation.create_group("O").as_matrix()
     sign = np.sign(np.linalg.det(onto)) * np.sign(np.linalg.det(back))
     return [turn if sign > 0 else turn @ np.diag([1.0, 1.0, -1.0]) for turn in octahedral]
 
 
-def _closest(points: Array, goal: Array, tree: cKDTree, rotation: Array) -> Alignment:
+def _closest(
+    points: Array, goal: Array, tree: "scipy.spatial.cKDTree", rotation: Array
+) -> Alignment:
     """Refine a rotation of centred points by iterated closest points (Besl and McKay 1992)."""
     shift, size = np.zeros(3), np.abs(goal).max()
     for _ in range(_ROUNDS):

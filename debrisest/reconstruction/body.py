@@ -8,7 +8,7 @@ as near to compact bodies and lost panels.
 from typing import Literal, NamedTuple
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
+import scipy
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.reconstruction import fusion
@@ -186,13 +186,13 @@ def _share_seen(mesh: ClosedMesh, seen: BoolArray, table: Table | None, cell: fl
 
 def _hull_volume(points: Array) -> float:
     try:
-        return float(ConvexHull(points).volume)
-    except QhullError:
+        return float(scipy.spatial.ConvexHull(points).volume)
+    except scipy.spatial.QhullError:
         raise ValueError("the points of the surface lie in a plane") from None
 
 
 def _longest(vertices: Array) -> float:
-    corners = vertices[ConvexHull(vertices).vertices]
+    corners = vertices[scipy.spatial.ConvexHull(vertices).vertices]
     return float(max(np.linalg.norm(corners - corner, axis=1).max() for corner in corners))
 
 

@@ -1,7 +1,7 @@
 """How much of a surface the images show."""
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from debrisest.arrays import Array, BoolArray
 from debrisest.reconstruction.closed_mesh import ClosedMesh
@@ -17,7 +17,7 @@ def triangles_seen(mesh: ClosedMesh, cloud: OrientedCloud, reach: float) -> Bool
     """Return which triangles have points of the cloud within a distance that face the same way."""
     normals, area = _normals(mesh)
     middles = mesh.vertices[mesh.triangles].mean(axis=1)
-    near, index = cKDTree(cloud.points).query(middles, k=_NEIGHBOURS)
+    near, index = scipy.spatial.cKDTree(cloud.points).query(middles, k=_NEIGHBOURS)
     alike = np.einsum("ti,tki->tk", normals, cloud.normals[index])
     alike /= np.maximum(area, 1e-30)[:, None]
     return np.asarray(((near < reach) & (alike > _ALIKE)).any(axis=1))

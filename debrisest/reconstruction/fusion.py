@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.counted import counted
@@ -184,10 +184,10 @@ def fused_mesh(grid: Grid, outside: Values, views: Sequence[DepthView]) -> tuple
 
 
 def _large(inside: BoolArray) -> BoolArray:
-    label, count = ndimage.label(inside)
+    label, count = scipy.ndimage.label(inside)
     if not count:
         raise ValueError("silhouettes and depth leave nothing of the body")
     sizes = np.bincount(label.ravel())
     sizes[0] = 0
     kept = sizes[label] > 0.01 * sizes.max()
-    return np.asarray(ndimage.binary_fill_holes(kept & (label > 0)))
+    return np.asarray(scipy.ndimage.binary_fill_holes(kept & (label > 0)))

@@ -1,7 +1,7 @@
 """Normals of a cloud that has none."""
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from debrisest.arrays import Array
 from debrisest.reconstruction.dense_cloud import OrientedCloud
@@ -17,7 +17,7 @@ def oriented(points: Array) -> OrientedCloud:
     """
     if len(points) < 100:
         raise ValueError(f"a cloud of {len(points)} points is too thin; 100 are needed at least")
-    near = points[cKDTree(points).query(points, k=_NEIGHBOURS)[1]]
+    near = points[scipy.spatial.cKDTree(points).query(points, k=_NEIGHBOURS)[1]]
     centred = near - near.mean(axis=1, keepdims=True)
     normals = np.linalg.eigh(np.swapaxes(centred, 1, 2) @ centred)[1][..., 0]
     outward = np.sign(((points - points.mean(axis=0)) * normals).sum(axis=1))

@@ -4,9 +4,7 @@ In each image the convex hull of what hangs together in the cloud: hollows count
 """
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+import scipy
 
 from debrisest.arrays import Array, BoolArray
 from debrisest.reconstruction.structure import Structure
@@ -31,13 +29,13 @@ def main_part(structure: Structure) -> BoolArray:
 
 
 def _hanging_together(points: Array) -> BoolArray:
-    tree = cKDTree(points)
+    tree = scipy.spatial.cKDTree(points)
     distance, _ = tree.query(points, k=[_NEIGHBOURS + 1])
     usual = np.median(distance)
     pairs = tree.query_pairs(_APART * float(usual), output_type="ndarray")
     shape = (len(points), len(points))
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=shape)
-    label = connected_components(graph, directed=False)[1]
+    graph = scipy.sparse.coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=shape)
+    label = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
     return np.asarray(label == np.bincount(label).argmax())
 
 

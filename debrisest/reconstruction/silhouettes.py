@@ -4,9 +4,11 @@ On a turntable some pixels show the body in most images, so that motion takes it
 where the edges of the images show a plain backdrop, its levels count there.
 """
 
+from functools import partial
+
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from debrisest.arrays import Array, BoolArray
 
@@ -37,7 +39,8 @@ def silhouettes(frames: Frames) -> BoolArray:
 
 
 def _of_camera(frames: Frames) -> BoolArray:
-    smooth = np.stack([ndimage.gaussian_filter(f, _BLUR_PX, output=np.float32) for f in frames])
+    blur = partial(scipy.ndimage.gaussian_filter, sigma=_BLUR_PX, output=np.float32)
+    smooth = np.stack([blur(frame) for frame in frames])
     border = _border(smooth)
     if np.median(border) < _DARK_GREY:
         contrast, level = smooth - float(np.median(border)), _threshold(border)
@@ -104,20 +107,20 @@ def _corrected(background: Array, backdrop: Array | None) -> Array:
 
 def _sharp(mask: BoolArray, contrast: Array) -> BoolArray:
     """Return the mask cut back, along its edge, to where the contrast is half of that nearby."""
-    edge = mask & ~ndimage.binary_erosion(mask, iterations=_EDGE_PX)
-    nearby = ndimage.maximum_filter(contrast, size=2 * _EDGE_PX + 1)
+    edge = mask & ~scipy.ndimage.binary_erosion(mask, iterations=_EDGE_PX)
+    nearby = scipy.ndimage.maximum_filter(contrast, size=2 * _EDGE_PX + 1)
     kept = mask & (~edge | (contrast > 0.5 * np.minimum(nearby, _BRIGHT_GREY)))
-    return np.asarray(ndimage.binary_closing(kept, iterations=1) | kept)
+    return np.asarray(scipy.ndimage.binary_closing(kept, iterations=1) | kept)
 
 
 def _largest(mask: BoolArray) -> BoolArray:
     """Return the largest connected piece, closed, without its small holes."""
-    closed = ndimage.binary_closing(mask, iterations=2) | mask
-    label, count = ndimage.label(ndimage.binary_opening(closed))
+    closed = scipy.ndimage.binary_closing(mask, iterations=2) | mask
+    label, count = scipy.ndimage.label(scipy.ndimage.binary_opening(closed))
     if not count:
         return np.zeros_like(mask)
     sizes = np.bincount(label.ravel())[1:]
     piece = label == 1 + sizes.argmax()
-    holes, number = ndimage.label(~piece)
+    holes, number = scipy.ndimage.label(~piece)
     small = np.flatnonzero(np.bincount(holes.ravel()) < 0.002 * sizes.max())
     return np.asarray(piece | np.isin(holes, small[small > 0])) if number else piece

@@ -3,8 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from debrisest.arrays import Array, IntArray
 
@@ -33,7 +32,9 @@ def faces_on_edges(triangles: IntArray) -> IntArray:
 def pieces_of(triangles: IntArray) -> IntArray:
     """Return the number of the connected piece that each triangle belongs to (triangle,)."""
     joined = (np.ones(3 * len(triangles)), edges_of(triangles).T)
-    label = connected_components(coo_array(joined, shape=2 * (triangles.max() + 1,)))[1]
+    label = scipy.sparse.csgraph.connected_components(
+        scipy.sparse.coo_array(joined, shape=2 * (triangles.max() + 1,))
+    )[1]
     return np.unique(label[triangles[:, 0]], return_inverse=True)[1].astype(np.int64)
 
 
@@ -52,8 +53,10 @@ def wound_alike(triangles: IntArray) -> Wound:
     one, other = face.T
     rows = np.concatenate([one, one + count])
     columns = np.concatenate([(other + twist), (other + count + twist) % (2 * count)])
-    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count))
-    label = connected_components(graph, directed=False)[1].astype(np.int64)
+    graph = scipy.sparse.coo_array(
+        (np.ones(len(rows)), (rows, columns)), shape=(2 * count, 2 * count)
+    )
+    label = scipy.sparse.csgraph.connected_components(graph, directed=False)[1].astype(np.int64)
     straight, turned = label[:count], label[count:]
     if (straight == turned).any():
         raise ValueError("the surface has one side only, as a Moebius strip has; it bounds no body")

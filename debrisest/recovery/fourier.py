@@ -9,7 +9,7 @@ real signal have Hermitian symmetry: the first n // 2 + 1 (the half spectrum) sa
 from math import ceil
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+import scipy
 
 from debrisest.arrays import Array, ComplexArray
 
@@ -22,18 +22,18 @@ def dictionary_length(samples: int, ratio: float) -> int:
     """
     if ratio < 1:
         raise ValueError(f"the ratio of atoms to samples must be at least 1, not {ratio}")
-    return samples if ratio == 1 else next_fast_len(ceil(ratio * samples), real=True)
+    return samples if ratio == 1 else scipy.fft.next_fast_len(ceil(ratio * samples), real=True)
 
 
 def synthesise(coefficients: ComplexArray, length: int, samples: int) -> Array:
     """Signals Phi c (..., samples) of half spectra (..., length // 2 + 1) (Eq. 13)."""
-    signal: Array = irfft(coefficients, length, norm="forward")
+    signal: Array = scipy.fft.irfft(coefficients, length, norm="forward")
     return signal[..., :samples]
 
 
 def analyse(signal: Array, length: int) -> ComplexArray:
     """Half spectra Phi* x (..., length // 2 + 1) of signals (..., time), zero padded."""
-    spectrum: ComplexArray = rfft(signal, length)
+    spectrum: ComplexArray = scipy.fft.rfft(signal, length)
     return spectrum
 
 

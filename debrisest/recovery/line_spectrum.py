@@ -13,7 +13,7 @@ is not observed is not in the sums; nothing is filled in.
 from typing import NamedTuple
 
 import numpy as np
-from scipy.fft import next_fast_len, rfft
+import scipy
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.outcome import Outcome
@@ -93,8 +93,8 @@ def _signals(samples: Array, weight: Array) -> Signals:
 def _one_line_more(signals: Signals, fit: LineFit) -> LineFit:
     """Return the refined fit with a line at the highest peak of what is left."""
     residual = signals.samples - lines_at(fit, signals.samples.shape[1])
-    length = next_fast_len(_PADDING * residual.shape[1], real=True)
-    spectrum = rfft(residual * signals.weight[..., None], length, axis=1)
+    length = scipy.fft.next_fast_len(_PADDING * residual.shape[1], real=True)
+    spectrum = scipy.fft.rfft(residual * signals.weight[..., None], length, axis=1)
     power = np.sum(np.abs(spectrum[:, 1:]) ** 2, axis=-1)
     peak = 2.0 * np.pi / length * (1 + np.argmax(power, axis=-1))
     return refine_lines(signals, np.concatenate([fit.frequency, peak[:, None]], axis=-1))

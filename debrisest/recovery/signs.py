@@ -11,7 +11,7 @@ from math import ceil
 from typing import NamedTuple
 
 import numpy as np
-from scipy.fft import next_fast_len
+import scipy
 
 from debrisest.arrays import Array, ComplexArray, IntArray
 from debrisest.recovery.basis_pursuit import Recovered, basis_pursuit
@@ -165,7 +165,9 @@ def _length(search: _Search, window: int) -> int:
     """Number of atoms for a window: the window itself, or a coarse grid of doubled lengths."""
     if search.ratio == 1:
         return window
-    length = next_fast_len(ceil(search.ratio * len(search.piece) / 2**_DOUBLINGS), real=True)
+    length = scipy.fft.next_fast_len(
+        ceil(search.ratio * len(search.piece) / 2**_DOUBLINGS), real=True
+    )
     while length < search.ratio * window:
         length *= 2
     return length

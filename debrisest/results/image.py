@@ -11,6 +11,8 @@ from typing import Any
 
 import h5py
 import numpy as np
+from h5py import h5a, h5d, h5l, h5o, h5s
+from numpy.typing import NDArray
 
 from debrisest.arrays import Data
 from debrisest.results.packed import create_numbers
@@ -62,12 +64,11 @@ def data_of(
 
     Raises ValueError as ``check`` does.
     """
-    data: Data = {}
-    for name, dataset in _datasets(file, attributes, names).items():
-        value = dataset[first:end] if has_runs(name) else dataset[()]
-        is_text = value.dtype.kind == "O"
-        data[name] = np.array([text.decode() for text in value]) if is_text else value
-    return data
+    found = _datasets(file, attributes, names)
+    return {
+        name: _values(dataset, slice(first, end)) if has_runs(name) else _values(dataset)
+        for name, dataset in found.items()
+    }
 
 
 def frames_of(file: Any) -> dict[str, str]:
@@ -80,7 +81,7 @@ def _datasets(file: Any, attributes: Mapping[str, Any], names: Container[str]) -
     """Return the named datasets, or raise ValueError where they are not those that are told."""
     found = {name: _dataset(file, name) for name in file if name in names}
     there = {name: dataset for name, dataset in found.items() if dataset is not None}
-    require_as_told(attributes, there, names)
+    require_as_told(attributes, there, names, _values)
     return there
 
 
@@ -89,15 +90,16 @@ def _dataset(file: Any, name: str) -> Any:
 
     Raises ValueError unless it lies in the file itself and has its axes, type and unit.
     """
-    dataset = file[name] if isinstance(file.get(name, getlink=True), h5py.HardLink) else None
-    if not isinstance(dataset, h5py.Dataset) or dataset.is_virtual or dataset.external:
+    is_own = file.id.links.get_info(name.encode()).type == h5l.TYPE_HARD
+    dataset = h5o.open(file.id, name.encode()) if is_own else None
+    if not isinstance(dataset, h5d.DatasetID) or _is_elsewhere(dataset.get_create_plist()):
         raise ValueError(f"{name} is no dataset of this file")
     if name not in VOCABULARY or (name in COORDINATES and _is_length(dataset)):
         return None
     kind = dataset.dtype
     if not (kind in _NUMBERS or h5py.check_string_dtype(kind) is not None):
         raise ValueError(f"{name} is of the type {kind}")
-    if dataset.attrs.get("units") != VOCABULARY[name].unit:
+    if _text(dataset, b"units") != VOCABULARY[name].unit:
         raise ValueError(f"{name} is not in {VOCABULARY[name].unit}")
     _lengths(name, dataset.shape)
     return dataset
@@ -112,8 +114,33 @@ def _lengths(name: str, shape: tuple[int, ...]) -> dict[str, int]:
     return lengths
 
 
+def _is_elsewhere(properties: Any) -> bool:
+    return bool(properties.get_layout() == h5d.VIRTUAL or properties.get_external_count())
+
+
 def _is_length(scale: Any) -> bool:
-    return bytes(scale.attrs.get("NAME", b"")).startswith(_NO_COORDINATE.encode())
+    return bool(h5a.exists(scale, b"NAME")) and _text(scale, b"NAME").startswith(_NO_COORDINATE)
+
+
+def _text(dataset: Any, attribute: bytes) -> str:
+    """Return the text of an attribute; raise KeyError where it is missing."""
+    found = h5a.open(dataset, attribute)
+    value = np.empty(found.shape, found.dtype)
+    found.read(value)
+    return str(value.item(), "utf-8")
+
+
+def _values(dataset: Any, part: slice = slice(None)) -> NDArray[Any]:
+    """Return a dataset, or a part along its first axis."""
+    first, end, _ = part.indices(*dataset.shape[:1])
+    value = np.empty((max(0, end - first), *dataset.shape[1:]), dataset.dtype)
+    if value.shape == dataset.shape:
+        dataset.read(h5s.ALL, h5s.ALL, value)
+    else:
+        space = dataset.get_space()
+        space.select_hyperslab((first, *(0 for _ in value.shape[1:])), value.shape)
+        dataset.read(h5s.create_simple(value.shape), space, value)
+    return np.array([text.decode() for text in value]) if value.dtype.kind == "O" else value
 
 
 def _write_data(file: Any, data: Data) -> None:

@@ -1,11 +1,12 @@
 """What the attributes of a checkpoint tell, and whether it can be so."""
 
 import json
-from collections.abc import Container, Mapping
+from collections.abc import Callable, Container, Mapping
 from contextlib import suppress
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from debrisest.arrays import Data
 from debrisest.vocabulary import VOCABULARY
@@ -61,16 +62,22 @@ def _of_json(text: Any) -> Any:
 
 
 def require_as_told(
-    attributes: Mapping[str, Any], found: Mapping[str, Any], names: Container[str]
+    attributes: Mapping[str, Any],
+    found: Mapping[str, Any],
+    names: Container[str],
+    values: Callable[[Any], NDArray[Any]],
 ) -> None:
-    """Raise ValueError unless of the named datasets just those are there that are told."""
+    """Raise ValueError unless of the named datasets just those are there that are told.
+
+    ``values`` reads one of them, once it has the lengths that it should have.
+    """
     told = json.loads(attributes["datasets"])
     wanted = {name: words for name, words in told.items() if name in names and name in VOCABULARY}
-    if {name: form(values) for name, values in found.items()} != wanted:
+    if {name: form(dataset) for name, dataset in found.items()} != wanted:
         raise ValueError("its datasets are others than it says")
     if "run" in found and "runs" in attributes:
         count, first = attributes["runs"], attributes.get("first_run", 0)
-        if len(found["run"]) != count or np.any(found["run"] != first + np.arange(float(count))):
+        if not np.array_equal(values(found["run"]), first + np.arange(float(count))):
             raise ValueError("its runs are others than it says")
-    if "time_s" in found and not np.all(np.diff(found["time_s"]) > 0):
+    if "time_s" in found and not np.all(np.diff(values(found["time_s"])) > 0):
         raise ValueError("its times do not ascend")

@@ -4,7 +4,9 @@ A step that another goes with is followed by it, which sees all trajectories bef
 """
 
 import json
+import pickle
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import groupby
 from time import process_time
 from typing import Any
@@ -117,7 +119,13 @@ def _attributes(step: Step) -> dict[str, Any]:
         "simulation": simulation.address.case,
         "runs": step.runs,
         "inputs": json.dumps(step.inputs),
-        "scenario": resolved(step.case),
+        "scenario": _resolved(pickle.dumps(step.case)),
         "plugins": json.dumps({plugin.path: plugin.digest for plugin in step.case.plugins}),
         "seed": step.case.scenario.seed,
     }
+
+
+@lru_cache
+def _resolved(case: bytes) -> str:
+    """Return the scenario that all files of a case have, of a case as it travels to workers."""
+    return resolved(pickle.loads(case))

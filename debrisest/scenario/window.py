@@ -1,6 +1,7 @@
 """Time spans as scenarios write them: start, end, an instant, a span."""
 
 import re
+from functools import lru_cache
 from typing import Annotated
 
 from pydantic import AfterValidator
@@ -13,6 +14,7 @@ _WINDOW = re.compile(f"^{_NUMBER}-{_NUMBER} s$")
 _INSTANT = re.compile(f"^{_NUMBER} s$")
 
 
+@lru_cache
 def window_of(text: str, duration: float) -> Window:
     """Return the time span that ``start``, ``end``, ``a s`` or ``a-b s`` names."""
     if text == "start":

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 
 from debrisest.arrays import Array, IntArray
 from debrisest.tracks.epochs import Epochs, group_times, scatter
@@ -75,6 +74,8 @@ def _ranges(rows: Rows, epochs: Epochs, place: IntArray, report: Report) -> Arra
 
 def _duplicates(rows: Rows) -> tuple[str, ...]:
     """Rows that say again what another one says (contradictions are refused elsewhere)."""
+    import pandas as pd
+
     parts = [v for v in (rows.point, rows.sigma, rows.pixel, rows.range) if v is not None]
     keys = np.column_stack([rows.time, rows.feature, rows.camera, *parts])
     again = pd.DataFrame(keys).duplicated().to_numpy()

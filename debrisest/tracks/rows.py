@@ -4,7 +4,6 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 
 from debrisest.arrays import Array, IntArray
 from debrisest.tracks.report import Report
@@ -37,6 +36,8 @@ class Rows:
 
 def codes(names: list[str]) -> tuple[IntArray, tuple[str, ...]]:
     """Return the code of each name, -1 for none, and the names in natural order (p2, p10)."""
+    import pandas as pd
+
     found, labels = pd.factorize(np.array([name or None for name in names], dtype=object))
     order = sorted(range(len(labels)), key=lambda index: _natural(str(labels[index])))
     rank = np.full(len(labels) + 1, -1)

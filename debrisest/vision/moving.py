@@ -1,7 +1,7 @@
 """What moves in images of a camera that stands still."""
 
 import numpy as np
-from scipy.ndimage import binary_dilation, uniform_filter
+import scipy
 
 from debrisest.arrays import BoolArray
 from debrisest.vision.optical_flow import Image
@@ -17,8 +17,8 @@ def moving(frames: Image, epoch: int) -> BoolArray:
     Between the frames before and after, by more than the noise that most of the image has.
     """
     near = frames[max(epoch - 1, 0) : epoch + 2].astype(float)
-    change = uniform_filter(np.ptp(near, axis=0), _AROUND)
+    change = scipy.ndimage.uniform_filter(np.ptp(near, axis=0), _AROUND)
     middle = np.median(change)
     spread = 1.4826 * np.median(np.abs(change - middle)) + 0.1
     changes = change > middle + _SIGMAS * spread
-    return np.asarray(binary_dilation(changes, iterations=_AROUND))
+    return np.asarray(scipy.ndimage.binary_dilation(changes, iterations=_AROUND))

@@ -8,8 +8,7 @@ aligned there (Lucas and Kanade; the inverse compositional form of Baker and Mat
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import map_coordinates
-from scipy.spatial import cKDTree
+import scipy
 
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.vision.bundle import Bundle, Sightings
@@ -42,7 +41,7 @@ class Slopes(NamedTuple):
 def slopes(bundle: Bundle, sightings: Sightings) -> Slopes:
     """Return the planes through each point's neighbours; outward is where it is seen from."""
     points = bundle.points
-    near = cKDTree(points).query(points, min(_NEIGHBOURS, len(points)))[1]
+    near = scipy.spatial.cKDTree(points).query(points, min(_NEIGHBOURS, len(points)))[1]
     around = points[near] - points[near].mean(axis=1, keepdims=True)
     axes = np.linalg.svd(around, full_matrices=False)[2]
     eye = -np.einsum("tij,ti->tj", bundle.rotation, bundle.translation)
@@ -142,7 +141,7 @@ def _sampled(
     values = np.zeros(places.shape[:2])
     for each in np.unique(epoch):
         of = epoch == each
-        values[of] = map_coordinates(
+        values[of] = scipy.ndimage.map_coordinates(
             images[each][camera], np.moveaxis(places[of], -1, 0)[::-1], np.float64, order=1
         )
     return values

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
+import scipy
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
@@ -52,7 +52,7 @@ class Renderer:
         shown = [self._sample(*each) for each in zip(self._rays, self._behind, *pose)]
         width, height = self._camera.size
         grey = _WHITE * np.mean(shown, axis=0).reshape(height, width)
-        return np.asarray(gaussian_filter(grey, blur) if blur else grey)
+        return np.asarray(scipy.ndimage.gaussian_filter(grey, blur) if blur else grey)
 
     def _sample(self, rays: Array, behind: Array, q: Array, position: Array) -> Array:
         """Return the light (ray,) of one point of every pixel."""

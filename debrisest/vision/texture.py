@@ -1,7 +1,7 @@
 """A pattern that fills space, so that a surface has the same look from wherever it is seen."""
 
 import numpy as np
-from scipy.ndimage import map_coordinates
+import scipy
 
 from debrisest.arrays import Array
 
@@ -23,5 +23,7 @@ class SolidNoise:
         total = np.zeros(len(points))
         for octave, lattice in enumerate(self._lattices):
             place = (points * (2.0**octave / self._grain) + 0.37 * octave).T
-            total += 0.75**octave * map_coordinates(lattice, place, order=1, mode="grid-wrap")
+            total += 0.75**octave * scipy.ndimage.map_coordinates(
+                lattice, place, order=1, mode="grid-wrap"
+            )
         return np.asarray(0.5 + 0.5 * np.tanh(_CONTRAST * total))

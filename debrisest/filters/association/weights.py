@@ -5,7 +5,7 @@ from math import gamma, pi
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import gammainc
+import scipy
 
 from debrisest.arrays import Array, IntArray
 
@@ -37,7 +37,7 @@ class Validation(NamedTuple):
     def passing(self, d: int) -> float:
         """Return P_G of a detection of d components."""
         given = self.gate_probability
-        return float(gammainc(0.5 * d, 0.5 * self.gate)) if given is None else given
+        return float(scipy.special.gammainc(0.5 * d, 0.5 * self.gate)) if given is None else given
 
     def checked(self) -> "Validation":
         """Return the settings if they make sense."""

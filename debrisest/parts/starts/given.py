@@ -1,10 +1,9 @@
 """A first guess that is written down, in the scenario or in a table beside it."""
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import pandas as pd
 from pydantic import ValidationInfo, field_validator, model_validator
 
 from debrisest.arrays import Array, Data
@@ -13,6 +12,9 @@ from debrisest.draws import Draws
 from debrisest.errors import allowed_names
 from debrisest.roles import Keys, NonNegative, SimulationPart
 from debrisest.vocabulary import AXIS_LENGTH, VOCABULARY, possible_units, table_scale
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 Nested = float | list[float] | list[list[float]]
 _COLUMNS = ["name", "component", "value", "sigma"]
@@ -115,6 +117,8 @@ def _shape(name: str, values: Any) -> tuple[int, ...]:
 
 def _read(path: Path) -> dict[str, Any]:
     """Quantities of a CSV; components are counted from 1, rows of a table after each other."""
+    import pandas as pd
+
     try:
         table = pd.read_csv(path, dtype={"name": str})
     except OSError as error:
@@ -126,7 +130,7 @@ def _read(path: Path) -> dict[str, Any]:
     return {str(name): _quantity(path, str(name), rows) for name, rows in table.groupby("name")}
 
 
-def _quantity(path: Path, name: str, rows: pd.DataFrame) -> dict[str, Any]:
+def _quantity(path: Path, name: str, rows: "DataFrame") -> dict[str, Any]:
     rows = rows.sort_values("component")
     if rows["component"].tolist() != list(range(1, len(rows) + 1)):
         raise ValueError(f"{path}: the components of {name} must be 1 to {len(rows)}, each once")

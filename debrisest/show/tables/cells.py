@@ -1,6 +1,7 @@
 """The cells of a scenario's tables: measured figures beside published values."""
 
 from collections.abc import Callable, Hashable, Mapping
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from debrisest.assessment.consistency import consistent_interval
 from debrisest.assessment.intervals import with_interval
 from debrisest.results.assessed import SIMULATED, Assessed, Result
 from debrisest.scenario.load import LoadedScenario
-from debrisest.scenario.schema import Table
+from debrisest.scenario.schema import Table, Tables
 from debrisest.show.tables.figures import dataset_of, figures, keys_of, unit_of
 from debrisest.show.tables.published import CellKey, Published, published_values
 from debrisest.show.tables.verdict import (
@@ -38,8 +39,9 @@ def cells(scenario: LoadedScenario, results: Assessed) -> pd.DataFrame:
     """
     published = published_values(scenario)
     rows = [
-        _row(key, estimator, table, scenario, results, published.get(key))
+        _row(key, estimator, table, scenario, results, measured, published.get(key))
         for table in scenario.common.tables.layout
+        for measured in [cache(partial(_measured, table, scenario.common.tables, results))]
         for key, estimator in keys_of(
             table, scenario.common.tables, scenario.cases, scenario.common.estimators
         )
@@ -97,16 +99,17 @@ def _row(
     table: Table,
     scenario: LoadedScenario,
     results: Assessed,
+    measured: Callable[[CellKey, str], dict[str, Any] | None],
     published: Published | None,
 ) -> dict[str, object] | None:
-    found = _measured(key, estimator, table, scenario, results)
+    found = measured(key, estimator)
     if found is None:
         return None
     bound = None
     if estimator != SIMULATED:
         name = scenario.common.estimators[estimator].bound
         if _is_bound(results.get((key.case, name))):
-            bound = _measured(key, name, table, scenario, results)
+            bound = measured(key, name)
     return {
         **key._asdict(),
         "estimator": estimator,
@@ -139,10 +142,10 @@ def _said(quantity: str, found: Mapping[str, Any], published: Published | None) 
 
 
 def _measured(
-    key: CellKey, estimator: str, table: Table, scenario: LoadedScenario, results: Assessed
+    table: Table, tables: Tables, results: Assessed, key: CellKey, estimator: str
 ) -> dict[str, Any] | None:
     """Return the figure of a cell with its interval and its runs, or None if it is not there."""
-    tables, dataset = scenario.common.tables, dataset_of(table, key.quantity)
+    dataset = dataset_of(table, key.quantity)
     parts = [results.get((case, estimator)) for case in tables.means.get(key.case, [key.case])]
     present = [part for part in parts if part is not None and part.shows(dataset)]
     if not present or len(present) < len(parts):

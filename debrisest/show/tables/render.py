@@ -5,6 +5,7 @@ from typing import Literal
 
 import pandas as pd
 from rich.box import SIMPLE_HEAD
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -136,18 +137,20 @@ def _terminal(scenario: LoadedScenario, cells: pd.DataFrame) -> str:
         for plain, full in both:
             title = Text(f"\nTable {plain.number}: {plain.title}", style="bold")
             terminal.print(title, soft_wrap=True)
-            detailed = _rich_table(full)
-            fits = _width(detailed, terminal) <= terminal.width
-            terminal.print(*([detailed] if fits else _fitting(plain, terminal)))
+            fits = _fits(full, terminal)
+            terminal.print(*([_rich_table(full)] if fits else _fitting(plain, terminal)))
             details |= fits
         for text in legends(scenario, cells, details):
             terminal.print(f"{text}\n", style="dim", soft_wrap=True, markup=False)
     return capture.get()
 
 
-def _width(table: Table, terminal: Console) -> int:
-    """Return how wide a table is where nothing is folded."""
-    return terminal.measure(table, options=terminal.options.update_width(10**4)).maximum
+def _fits(sheet: Sheet, terminal: Console) -> bool:
+    """Return whether a table needs no folding, which the widest text of each column tells."""
+    widest = [max(column, key=cell_len) for column in zip(*sheet.rows)]
+    table = _rich_table(sheet._replace(rows=[widest] if widest else []))
+    free = terminal.options.update_width(10**4)
+    return terminal.measure(table, options=free).maximum <= terminal.width
 
 
 def _fitting(sheet: Sheet, terminal: Console) -> list[Table]:
@@ -157,12 +160,12 @@ def _fitting(sheet: Sheet, terminal: Console) -> list[Table]:
     """
     below = [head.replace(" (", "\n(").replace(", ", ",\n") for head in sheet.heads]
     parts = [head.replace("_", "_\n") for head in below]
-    tables = [_rich_table(sheet._replace(heads=heads)) for heads in (sheet.heads, below, parts)]
-    fits = [table for table in tables if _width(table, terminal) <= terminal.width]
+    forms = [sheet._replace(heads=heads) for heads in (sheet.heads, below, parts)]
+    fitting = next((form for form in forms if _fits(form, terminal)), None)
     named = 2 if "source" in sheet.heads else 1
     middle = (named + len(sheet.heads) + 1) // 2
-    if fits or len(sheet.heads) < named + 2:
-        return [*fits, tables[-1]][:1]
+    if fitting or len(sheet.heads) < named + 2:
+        return [_rich_table(fitting or forms[-1])]
     halves = (slice(named, middle), slice(middle, None))
     return [table for half in halves for table in _fitting(_columns(sheet, named, half), terminal)]
 
