@@ -29,11 +29,13 @@ def test_the_tutorial(
         result = cli(*shlex.split(line))
         assert result.exit_code == 0, f"{line}: {result.output}"
         told[line] = result.output
-    assert "7 of 7 steps would run" in told[next(line for line in told if "--dry-run" in line)]
+    assert "0 of 7 steps would run" in told["sweep mine.yaml --dry-run"]
+    changed = "sensors.camera.noise_m=0.05"
+    assert f"results/mine@{changed}" in told[f"sweep mine.yaml --set {changed}"]
     compared = told["compare results/mine --estimator unscented --estimator extended"]
     assert "paired: the same data (2 cells)" in compared
     assert "accepted: torque-free motion explains the data" in told["estimate tracks.csv"]
-    again = cli("sweep", "mine.yaml", "--dry-run").output
+    again = cli("sweep", "mine.yaml", "--dry-run", "--set", changed).output
     assert "0 of 7 steps would run" in again
 
 
