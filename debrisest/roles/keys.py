@@ -52,16 +52,22 @@ Limits = Annotated[
 """Lower and upper limit, such as ``Limits[Positive]``."""
 
 
-def _one_or_axes(given: object) -> str:
-    return "axes" if isinstance(given, list) else "one"
+def _one_or_each(given: object) -> str:
+    return "each" if isinstance(given, list) else "one"
 
 
 PerAxis = Annotated[
     Annotated[_Number, Tag("one")]
-    | Annotated[list[_Number], Field(min_length=3, max_length=3), Tag("axes")],
-    Discriminator(_one_or_axes),
+    | Annotated[list[_Number], Field(min_length=3, max_length=3), Tag("each")],
+    Discriminator(_one_or_each),
 ]
 """The same for all three axes, or one for each, such as ``PerAxis[Positive]``."""
+PerCoordinate = Annotated[
+    Annotated[_Number, Tag("one")]
+    | Annotated[list[_Number], Field(min_length=2, max_length=2), Tag("each")],
+    Discriminator(_one_or_each),
+]
+"""The same for both coordinates of a pixel, or one for each."""
 
 
 class Keys(BaseModel):

@@ -1,9 +1,9 @@
 """The orbit of a piece of debris from the pixels of several satellites' cameras."""
 
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import model_validator
 
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
@@ -13,18 +13,7 @@ from debrisest.filters.estimates import Estimates
 from debrisest.filters.scan_model import ScanModel
 from debrisest.problems.orbit_from_pixels.model import ORBIT, ObserverGeometry, scan_model
 from debrisest.problems.orbit_from_pixels.score import scores, true_bias
-from debrisest.roles import NonNegative, PerAxis, Positive, ProblemPart, Window
-
-
-def _one_or_both(given: object) -> str:
-    return "both" if isinstance(given, list) else "one"
-
-
-_PerCoordinate = Annotated[
-    Annotated[Positive, Tag("one")]
-    | Annotated[list[Positive], Field(min_length=2, max_length=2), Tag("both")],
-    Discriminator(_one_or_both),
-]
+from debrisest.roles import NonNegative, PerAxis, PerCoordinate, Positive, ProblemPart, Window
 
 
 class OrbitFromPixels(ProblemPart):
@@ -37,7 +26,7 @@ class OrbitFromPixels(ProblemPart):
     kind: Literal["orbit_from_pixels"]
     acceleration_noise_m_s2: PerAxis[NonNegative]
     """Standard deviation of an acceleration that lasts a step, inertial axes."""
-    pixel_variance_px2: _PerCoordinate | None = None
+    pixel_variance_px2: PerCoordinate[Positive] | None = None
     """Variance of both coordinates of a point, or of each; left out, it is that of `detections`:
     the noise squared, and 1/12 of rounding."""
     updates_in_control: bool = False
