@@ -101,7 +101,7 @@ def _of_proportion(figures: Array) -> tuple[float, float]:
     n, share, z = len(figures), float(np.mean(figures)), float(ndtri(1 - _TAIL))
     centre = (share + z**2 / (2 * n)) / (1 + z**2 / n)
     half = z / (1 + z**2 / n) * np.sqrt(share * (1 - share) / n + z**2 / (4 * n**2))
-    return max(float(centre - half), 0.0), min(float(centre + half), 1.0)
+    return float(np.clip(centre - half, 0, share)), float(np.clip(centre + half, share, 1))
 
 
 def spread(name: str, figures: Array) -> Spread:

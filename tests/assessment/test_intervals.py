@@ -89,6 +89,12 @@ def test_a_share_of_runs_has_wilsons_interval() -> None:
     assert with_interval("ever", [np.zeros(20)])[1:] == pytest.approx((0.0, 0.1611), abs=1e-4)
 
 
+@pytest.mark.parametrize("runs", [5, 20, 100, 300])
+def test_the_interval_of_a_share_ends_where_shares_end(runs: int) -> None:
+    assert with_interval("share", [np.zeros(runs)])[1] == 0
+    assert with_interval("share", [np.ones(runs)])[2] == 1
+
+
 def test_positive_figures_never_have_an_end_below_zero() -> None:
     assert with_interval("rmse", [np.array([0.1, 0.1, 4.0])])[1] > 0
 
