@@ -81,7 +81,7 @@ def doubted(known: CameraRangeGeometry, model: LandmarkModel) -> LandmarkModel:
 def _doubted_rows(known: CameraRangeGeometry, found: Rows) -> Rows:
     pixels = found.shown[..., :2]
     static = np.zeros((*found.shown.shape, len(DOUBTS)))
-    static[..., :2, FOCAL] = pixels[..., None]
+    static[..., :2, FOCAL] = _apart_from(found.shared[..., :2, :], pixels)[..., None]
     static[..., 2:, RANGE] = 1.0
     if known.attitude == "known" and not known.camera_bias:
         sight = np.concatenate([pixels / known.focal, np.ones_like(pixels[..., :1])], axis=-1)
@@ -93,6 +93,21 @@ def _doubted_rows(known: CameraRangeGeometry, found: Rows) -> Rows:
         by_core=np.concatenate([found.by_core, static], axis=-1),
         common_by_core=np.concatenate([found.common_by_core, common], axis=-1),
     )
+
+
+def _apart_from(shared: Array, pixels: Array) -> Array:
+    """Return what of pixels (..., N, 2) the noise that they share (..., N, 2, s) cannot make.
+
+    Pixels that are predicted by a noisy attitude have its noise in them, as the residuals have: a
+    product of both, such as the score of the focal length, would not be zero in the mean.
+    """
+    if shared.shape[-1] == 0:
+        return pixels
+    by = shared.reshape(*shared.shape[:-3], -1, shared.shape[-1])
+    flat = pixels.reshape(*by.shape[:-1], 1)
+    across = np.swapaxes(by, -1, -2)
+    explained = by @ np.linalg.solve(across @ by, across @ flat)
+    return np.asarray(pixels - explained.reshape(pixels.shape))
 
 
 def _pulled(known: CameraRangeGeometry, last: int) -> Array:

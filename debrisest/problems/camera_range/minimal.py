@@ -64,7 +64,7 @@ class CameraRangeMinimal(ProblemPart):
     )
     start_needs = ("rate_b", "relative_position_h", "relative_velocity_h", "point_b")
     true_state = TRUE_STATE
-    version = 2
+    version = 3
     kind: Literal["camera_range_minimal"]
     camera_attitude: CameraAttitude = "known"
     """Attitude of the camera as it is told, or `implied`: the camera looks at the centre of mass

@@ -147,3 +147,26 @@ def test_doubts_are_the_slopes_of_what_is_shown(experiment) -> None:
             pushed[-1] += clohessy_wiltshire.propagate(drift, kick, N, rest)[0][0]
         np.testing.assert_allclose(by_end[0, 6:9, 5 + axis], pushed[-1], rtol=1e-9)
         pushed[-1] = 0.0
+
+
+def test_noise_of_the_attitude_does_not_look_like_another_focal_length(experiment) -> None:
+    """Its score is zero in the mean, though pixels and residuals have the same noise in them."""
+    draws, epoch, sigma = 4000, np.array([40]), 3.5e-4
+    case = experiment(1, 41, 41, noise=0.0)
+    turn = sigma * np.random.default_rng(9).normal(size=(draws, 1, 3))
+    noisy = case.known.camera[:, epoch] @ quaternion.to_matrix(quaternion.exp(turn))
+    known = case.known._replace(camera=noisy, attitude_sigma=sigma)
+    model = doubtful_model(known).doubted()
+    core = np.concatenate([case.core[0, epoch], np.zeros((1, len(model.doubts)))], axis=-1)
+    rows = model.rows(np.broadcast_to(core, (draws, 1, core.shape[-1])), case.points[:, None], [0])
+    seen = case.model.rows(case.core[:, epoch], case.points[:, None], epoch).shown[0, 0]
+    residual = (seen - rows.shown[:, 0]).reshape(draws, -1)
+    shared = rows.shared[0, 0].reshape(residual.shape[1], -1)
+    left = residual @ np.linalg.inv(np.eye(len(shared)) + shared @ shared.T)
+    by_focal = rows.by_core[:, 0, :, :, case.model.errors].reshape(draws, -1)
+    plain = rows.shown[:, 0].reshape(draws, -1)
+    by_noise = shared.T @ shared
+    expected = -np.trace(np.linalg.solve(np.eye(3) + by_noise, by_noise))
+    assert (plain * left).sum(-1).mean() == pytest.approx(expected, rel=0.1)
+    assert abs((by_focal * left).sum(-1).mean()) < 0.01 * abs(expected)
+    assert np.linalg.norm(by_focal[0]) > 0.8 * np.linalg.norm(plain[0] - plain[0].mean())
