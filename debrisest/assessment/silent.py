@@ -7,15 +7,17 @@ from debrisest.arrays import Array, Data
 _CHANCE = 5.7e-7
 """Of five sigma of a normal variable, on both sides."""
 _NO_MINIMUM = -1e-2
+_SIGMAS = 5.0
 
 
 def silent_failures(errors: Data) -> Data:
     """Return ``silent_failure (run,)`` and ``doubtful (run,)``, as far as there are figures.
 
     A run fails where its normalised error squared at the end is one that a right covariance has
-    once in two million times, or is not finite; silently, if ``doubt`` is zero. Where costs are
-    known it is `chart_free` in place of that square, which no choice of coordinates can bend; the
-    run fails too if it is below zero, no minimum.
+    once in two million times, or is not finite, or where one of its numbers is off by more than
+    five of its sigmas (`deviation`); silently, if ``doubt`` is zero. Where costs are known it is
+    `chart_free` in place of that square, which no choice of coordinates can bend; the run fails too
+    if it is below zero, no minimum.
     """
     if "doubt" not in errors:
         return {}
@@ -25,6 +27,8 @@ def silent_failures(errors: Data) -> Data:
     if name in errors and f"{name}_dof" in errors:
         square, dof = errors[name][:, -1], errors[f"{name}_dof"][:, -1]
         failed = ~((square > _NO_MINIMUM) & (_chance(square, dof) > _CHANCE))
+        if "deviation" in errors:
+            failed |= errors["deviation"][:, -1] > _SIGMAS
         result["silent_failure"] = (failed & ~doubtful).astype(np.float64)
     return result
 

@@ -91,6 +91,8 @@ class ReplayModel(NamedTuple):
     """(state, step in plain errors (run, n_e)) -> what `retract` limits of a step: its derivative
     (run, c, n_e), and by how much it has to change (run, c), zero where it need not."""
     doubts: tuple[Doubt, ...] = ()
+    bending: tuple[int, ...] = ()
+    """Errors that the measurements may tell along a bent valley of the cost only."""
     point_rows: Callable[[Array, Array, int, IntArray], PointRows] | None = None
     """The same as `rows`, for a model whose rows depend on few errors each."""
     select: Callable[[IntArray], "ReplayModel"] | None = None

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from debrisest.assessment.nees import covariance_epochs, nees
+from debrisest.assessment.nees import covariance_epochs, deviation, nees
 
 TIMES = 0.5 * np.arange(7)
 DATA = {"time_s": TIMES, "covariance_time_s": TIMES[[1, 4, 6]]}
@@ -28,3 +28,11 @@ def test_what_is_not_known_does_not_count(spoilt):
     found = nees(DATA, **given)
     np.testing.assert_array_equal(np.isfinite(found["nees"][0]).nonzero()[0], [1, 6])
     np.testing.assert_array_equal(found["nees_dof"][0].nonzero()[0], [1, 6])
+
+
+def test_the_deviation_is_that_of_the_worst_number():
+    error = np.array([[[3.0, 0.5], [-1.0, 1.0], [0.0, -4.0]]])
+    covariance = np.broadcast_to(np.array([[9.0, 1.0], [1.0, 4.0]]), (1, 3, 2, 2))
+    found = deviation(DATA, error, covariance)["deviation"]
+    np.testing.assert_allclose(found[0, [1, 4, 6]], [1.0, 0.5, 2.0], rtol=1e-14)
+    assert np.isnan(found[0, [0, 2, 3, 5]]).all()

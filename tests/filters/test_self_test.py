@@ -99,3 +99,10 @@ def test_a_failure_is_silent_only_without_a_word() -> None:
     assert found["silent_failure"].tolist() == [0.0, 1.0, 0.0, 1.0]
     assert found["doubtful"].tolist() == [0.0, 0.0, 1.0, 0.0]
     assert silent_failures({"nees": nees, "nees_dof": dof}) == {}
+
+
+def test_one_number_far_beyond_its_sigma_is_a_failure_whatever_the_cost_says() -> None:
+    w, dof = np.ones((3, 1)), np.full((3, 1), 29.0)
+    errors = {"w": w, "w_dof": dof, "doubt": np.array([0, 0, 1])}
+    errors["deviation"] = np.array([[4.0], [6.0], [6.0]])
+    assert silent_failures(errors)["silent_failure"].tolist() == [0.0, 1.0, 0.0]

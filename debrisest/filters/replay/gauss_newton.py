@@ -19,6 +19,30 @@ _LIMITS = 2
 """Rounds in which limits of a step are found, one of which may bring up the next."""
 
 
+class Held(NamedTuple):
+    """One plain error of each run beside a state, kept at a value while all else is free."""
+
+    error: IntArray
+    """Which one, (run,)."""
+    beside: Array
+    """State (run, n) at epoch 0."""
+    value: Array
+    sigma: Array
+    """How firmly it is kept, (run,)."""
+
+    def miss(self, model: ReplayModel, state: Array) -> Array:
+        """Return by how much (run,) states at epoch 0 fall short of it."""
+        runs = np.arange(len(state))
+        return self.value - model.plain_difference(state, self.beside)[runs, self.error]
+
+    def added(self, model: ReplayModel, at: Linearization) -> Linearization:
+        """Return a linearised cost with it, as one more measurement."""
+        runs, miss, weight = np.arange(len(at.state)), self.miss(model, at.state), self.sigma**-2.0
+        at.information[runs, self.error, self.error] += weight
+        at.gradient[runs, self.error] += weight * miss
+        return at._replace(cost=at.cost + weight * miss**2)
+
+
 class Solution(NamedTuple):
     """Where Gauss-Newton stopped: the step is to be taken from ``at.state``, in plain errors."""
 
@@ -45,23 +69,28 @@ def gauss_newton(
     last: int,
     iterations: int,
     tolerance: float = CONVERGED,
+    held: Held | None = None,
 ) -> Solution:
     """Minimise the cost of epochs 0 to ``last`` from ``state (run, n)`` at epoch 0.
 
     A step that raises the cost is taken back, and the next one is damped by a part of the prior's
     information (the information itself as a measure stalls in the long valleys of such costs).
     `iterations` counts linearisations; runs stop one by one, where the decrease that the next step
-    promises is below `tolerance`.
+    promises is below `tolerance`. What is `held` adds to the cost by as much as it is missed.
     """
+
+    def place(runs: IntArray, state: Array) -> Linearization:
+        part = model.of(runs)
+        at = linearize(part, take(arc, runs), state, last)
+        return at if held is None else take(held, runs).added(part, at)
 
     def step(at: Linearization, runs: IntArray, damping: Array) -> tuple[Array, Array]:
         return _step(model.of(runs), at, arc.information[runs], damping)
 
     def trial(best: Linearization, runs: IntArray, step: Array) -> Linearization:
-        part = model.of(runs)
-        return linearize(part, take(arc, runs), move(part, best.state[runs], step), last)
+        return place(runs, move(model.of(runs), best.state[runs], step))
 
-    first = linearize(model, arc, state, last)
+    first = place(np.arange(len(state)), state)
     damping = Damping(0.0, _next_damping, lambda _, promise, __: promise < tolerance)
     return Solution(*descend(first, lambda at: at.cost, step, trial, damping, iterations))
 

@@ -36,6 +36,7 @@ QUANTITIES = {
         *(TIME, "1", "normalised error squared per dimension", "1"),
         ChiSquare("nees_dof", white=False),
     ),
+    "deviation": Quantity(TIME, "1", "largest error of a single number over its sigma", "1"),
     "nees_dof": Quantity(TIME, "1", "errors that it counts, where the covariance was kept"),
     "w": Quantity(
         *(TIME, "1", "excess of the truth's cost over the estimate's per dimension", "1"),

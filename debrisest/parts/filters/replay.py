@@ -7,6 +7,7 @@ from pydantic import Field
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.replay.replay import RATIO, replay, smooth
 from debrisest.filters.replay.self_tests import self_tests
+from debrisest.filters.replay.valley import with_bends
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.self_test import told
 from debrisest.filters.status import ReplayStatus
@@ -17,7 +18,7 @@ from debrisest.roles import FilterPart, Given
 class Replay(FilterPart):
     """Maximum a posteriori at every epoch of all measurements so far, or of all there are."""
 
-    version = 3
+    version = 4
     takes = "replay_model"
     runs_together = 100
     kind: Literal["replay"]
@@ -38,6 +39,7 @@ class Replay(FilterPart):
         found = replay(model, *known, ratio=self.ratio, gate=self.gate, keep=keep, reference=truth)
         if self.smoother:
             found = smooth(model, *known, found, gate=self.gate, keep=keep, reference=truth)
+        found = with_bends(model, *known, found, self.gate, self.smoother)
         converged = found.status == ReplayStatus.CONVERGED.sentence
         tests = self_tests(model, *known, found, self.gate)
         return told(found._replace(counts=found.counts | {"converged": converged}), tests)

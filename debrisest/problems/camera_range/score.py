@@ -8,7 +8,7 @@ in the Hill frame, w rate, s log-ratios of the inertia.
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data, IntArray
-from debrisest.assessment.nees import covariance_epochs, nees
+from debrisest.assessment.nees import covariance_epochs, deviation, nees
 from debrisest.assessment.observability import known_directions
 from debrisest.assessment.shape_alignment import best_rotation, rms_distance, shape_error
 from debrisest.attitude import quaternion
@@ -137,7 +137,7 @@ def _remaining(guess: Data, errors: Data) -> Data:
 
 
 def _consistency(data: Data, errors: Data, rows: IntArray) -> Data:
-    """NEES of w, rho, v and s.
+    """NEES and deviation of w, rho, v and s.
 
     The attitude is left out: at zero process noise it follows from the others, and the covariance
     with it is singular.
@@ -145,7 +145,8 @@ def _consistency(data: Data, errors: Data, rows: IntArray) -> Data:
     kept = covariance_epochs(data)
     names = ("rate_error", "position_error", "velocity_error", "log_inertia_error")
     error = np.concatenate([errors[name][:, kept] for name in names if name in errors], axis=-1)
-    return nees(data, error, data["covariance"][:, :, rows[:, None], rows])
+    covariance = data["covariance"][:, :, rows[:, None], rows]
+    return nees(data, error, covariance) | deviation(data, error, covariance)
 
 
 def _observability(data: Data, rows: IntArray, prior_sigma: float) -> Data:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from debrisest.arrays import Array, Data
-from debrisest.assessment.nees import covariance_epochs, nees
+from debrisest.assessment.nees import covariance_epochs, deviation, nees
 from debrisest.attitude import quaternion
 from debrisest.problems.orbit_from_pixels.model import ORBIT
 from debrisest.sensors import pinhole
@@ -79,4 +79,5 @@ def _consistency(data: Data) -> Data:
     truth = np.concatenate([data["orbit_position"], data["orbit_velocity"]], axis=-1)
     found = np.concatenate([data["debris_position"], data["debris_velocity"]], axis=-1)
     error = (found - truth)[:, covariance_epochs(data)]
-    return nees(data, error, data["covariance"][..., ORBIT, ORBIT])
+    covariance = data["covariance"][..., ORBIT, ORBIT]
+    return nees(data, error, covariance) | deviation(data, error, covariance)

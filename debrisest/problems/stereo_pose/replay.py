@@ -59,6 +59,7 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
         error_names=error_names("attitude_x attitude_y attitude_z", points),
         excess=chart.excess,
         doubts=doubts(known),
+        bending=tuple(range(chart.K_ERROR.start, chart.K_ERROR.stop)),
         displace=lambda state, error: chart.displace(state, error, points),
         point_rows=at_epochs,
     )

@@ -3,10 +3,10 @@
 import numpy as np
 
 from debrisest.arrays import Array, Data
-from debrisest.assessment.nees import covariance_epochs, nees
+from debrisest.assessment.nees import covariance_epochs, deviation, nees
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
-from debrisest.problems.stereo_pose.chart import difference, robocentric
+from debrisest.problems.stereo_pose.chart import difference, plain_difference, robocentric
 from debrisest.problems.stereo_pose.data import state_of
 from debrisest.problems.stereo_pose.model import K, Q
 
@@ -50,17 +50,18 @@ def _errors(data: Data) -> Data:
 
 
 def _consistency(data: Data) -> Data:
-    """NEES in the robocentric chart of the estimate.
+    """NEES in the robocentric chart of the estimate, and the deviation of what is told.
 
-    Where the points are is known far better than where
-    the centre of mass is, a thin and curved shell in the chart of position and attitude.
+    Where the points are is known far better than where the centre of mass is, a thin and curved
+    shell in the chart of position and attitude.
     """
     kept = covariance_epochs(data)
     estimated, true = state_of(data)[:, kept], state_of(data, "true_")[:, kept]
     points = data["point_b"].shape[-2]
-    chart = robocentric(estimated, points)
-    covariance = chart @ plain_covariance(estimated, data["covariance"]) @ _transposed(chart)
-    return nees(data, difference(true, estimated, points), covariance)
+    plain, chart = plain_covariance(estimated, data["covariance"]), robocentric(estimated, points)
+    told = deviation(data, plain_difference(true, estimated), plain)
+    covariance = chart @ plain @ _transposed(chart)
+    return told | nees(data, difference(true, estimated, points), covariance)
 
 
 def plain_covariance(state: Array, covariance: Array) -> Array:

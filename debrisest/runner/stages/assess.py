@@ -12,7 +12,7 @@ from debrisest.roles import ProblemPart, Window
 from debrisest.runner.stages.reason import about
 from debrisest.scenario.case import Case
 
-VERSION = 5
+VERSION = 6
 
 _COUNTED = ("converged", "repairs", "reopened", "doubt")
 """What filters count over whole runs."""

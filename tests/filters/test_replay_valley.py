@@ -1,0 +1,125 @@
+"""Covariances of replays whose cost bends, beside the exact floor of the cost."""
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from debrisest.filters.replay.gauss_newton import Held, gauss_newton
+from debrisest.filters.replay.measured_arc import measured_arc
+from debrisest.filters.replay.replay import replay
+from debrisest.filters.replay.valley import with_bends
+from debrisest.filters.replay_model import ReplayModel
+
+RUNS, EPOCHS, SIGMA = 60, 30, 0.02
+TILT, SLOPE = 0, 1
+PRIOR = np.array([0.3, 0.7])
+
+
+def model_of(shown, derivative, bending=(SLOPE,)):
+    """Two constants, measured through a function of both at every epoch."""
+
+    def trajectory(state, first, last):
+        epochs = abs(last - first) + 1
+        return np.repeat(state[:, None], epochs, 1), np.ones((len(state), epochs, 1, 1))
+
+    def rows(states, sensitivity, first, epochs):
+        return shown(states)[..., None], derivative(states)[..., None, :]
+
+    def identity(state):
+        return np.broadcast_to(np.eye(2), (len(state), 2, 2))
+
+    return ReplayModel(
+        trajectory=trajectory,
+        rows=rows,
+        transition=lambda sensitivity, first, last: np.broadcast_to(
+            np.eye(2), (len(sensitivity), 2, 2)
+        ),
+        rewind=lambda state, epoch: state,
+        chart=identity,
+        inverse_chart=identity,
+        retract=lambda state, error: state + error,
+        difference=lambda state, reference: state - reference,
+        plain_difference=lambda state, reference: state - reference,
+        start=lambda prior, shown, epoch: prior,
+        sigma=np.array([SIGMA]),
+        error_names=("tilt", "slope"),
+        bending=bending,
+    )
+
+
+def product(bending=(SLOPE,)):
+    """Only the product of both is seen: the tilt of a spin, and a slope of the inertia."""
+    return model_of(lambda x: x[..., TILT] * x[..., SLOPE], lambda x: x[..., ::-1], bending)
+
+
+def line():
+    weights = np.array([1.0, 2.0])
+    return model_of(lambda x: x @ weights, lambda x: np.broadcast_to(weights, x.shape))
+
+
+def found_of(model, seed=0):
+    """Truths, priors, measurements and estimates of spins: no tilt, slopes of 0.3 to 0.8."""
+    rng = np.random.default_rng(seed)
+    truth = np.stack([np.zeros(RUNS), rng.uniform(0.3, 0.8, RUNS)], -1)
+    prior = truth + PRIOR * rng.normal(size=(RUNS, 2))
+    shown = model.rows(truth[:, None], None, 0, None)[0]
+    measured = shown + SIGMA * rng.normal(size=(RUNS, EPOCHS, 1))
+    covariance = np.broadcast_to(np.diag(PRIOR**2), (RUNS, 2, 2))
+    known = model, prior, covariance, measured
+    found = replay(*known)
+    return truth, known, found, with_bends(*known, found)
+
+
+def floor(known, run, slope):
+    """Least cost over the tilt, by another minimiser: of a product it has one minimum."""
+    _, prior, _, measured = known
+
+    def cost(tilt):
+        offset = (np.array([tilt, slope]) - prior[run]) / PRIOR
+        return offset @ offset + np.sum(((measured[run] - tilt * slope) / SIGMA) ** 2)
+
+    return minimize_scalar(cost, bounds=(-3.0, 3.0), method="bounded").fun
+
+
+def test_what_does_not_bend_is_left_alone() -> None:
+    _, _, found, told = found_of(line())
+    np.testing.assert_allclose(told.covariance, found.covariance, rtol=1e-6)
+    np.testing.assert_allclose(told.sigma, found.sigma, rtol=1e-6)
+
+
+def test_sigmas_of_a_bent_valley_hold() -> None:
+    """By its curvature alone the slope is sure to be zero where the tilt has been taken for not."""
+    truth, _, found, told = found_of(product())
+    far = [
+        np.abs(one.state[:, -1] - truth)[:, SLOPE] / one.sigma[:, -1, SLOPE]
+        for one in (found, told)
+    ]
+    assert np.mean(far[0] > 5.0) > 0.1, "a filter that does not look is wrong, and sure of itself"
+    assert far[1].max() < 4.0
+
+
+def test_the_stated_parabola_is_below_the_floor() -> None:
+    _, known, found, told = found_of(product())
+    for run in range(20):
+        at, sigma = found.state[run, -1, SLOPE], told.sigma[run, -1, SLOPE]
+        rise = [floor(known, run, at + way * sigma) - floor(known, run, at) for way in (-3.5, 3.5)]
+        assert min(rise) > 0.6 * 9.0
+
+
+def test_an_error_that_does_not_bend_is_not_looked_at() -> None:
+    _, _, found, told = found_of(product(bending=()))
+    assert told is found
+
+
+@pytest.mark.parametrize("error", [TILT, SLOPE])
+def test_all_but_what_is_held_is_at_its_best(error: int) -> None:
+    """Of a plane through measurements, by the textbook formula of conditional means."""
+    _, known, found, _ = found_of(line())
+    model, prior = known[:2]
+    arc = measured_arc(*known)
+    best, spread = found.state[:, -1], found.covariance[:, -1]
+    value = np.linspace(-2.0, 2.0, RUNS)
+    held = Held(np.full(RUNS, error), best, value, np.full(RUNS, 1e-6))
+    at = gauss_newton(model, arc, prior, EPOCHS - 1, 5, 1e-9, held=held).at
+    way = spread[:, :, error] / spread[:, error, error, None]
+    np.testing.assert_allclose(at.state, best + value[:, None] * way, atol=1e-6)
