@@ -4,6 +4,7 @@ import errno
 import os
 import secrets
 import socket
+import unicodedata
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -32,6 +33,26 @@ def replacing(path: Path) -> Iterator[Path]:
         if error.errno is None or not str(error.filename or ".tmp").endswith(".tmp"):
             raise
         raise OSError(error.errno, os.strerror(error.errno), str(path)) from None
+
+
+def content(path: Path) -> bytes:
+    """Return what a file holds; OSError also for a pipe or a device, which may never end."""
+    require_ending(path)
+    return path.read_bytes()
+
+
+def require_ending(path: Path) -> None:
+    """Raise OSError for a pipe or a device, which may never end."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise OSError(errno.EINVAL, "this is a pipe or a device, not a file", str(path))
+
+
+def alike(name: str) -> str:
+    """Return a key that names share which some disk takes for one: but for capitals, accents.
+
+    Letters with accents can be written as one sign or as two.
+    """
+    return unicodedata.normalize("NFD", unicodedata.normalize("NFD", name).casefold())
 
 
 def put(path: Path, content: bytes) -> None:

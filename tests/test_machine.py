@@ -3,10 +3,12 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -216,3 +218,63 @@ def test_a_folder_without_rights(
     (told,) = done.stderr.splitlines()
     assert told.startswith(str(folder))
     assert told.endswith(": Permission denied")
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ("import", "PIPE"),
+        ("estimate", "PIPE"),
+        ("estimate", "tracks.csv", "--points", "PIPE"),
+        ("estimate", "tracks.csv", "--attitude", "PIPE"),
+        ("estimate", "tracks.csv", "--camera", "PIPE"),
+        ("estimate", "poses.csv", "--image-times", "PIPE"),
+        ("import", "tracks.csv", "--scenario", "PIPE"),
+        ("validate", "small.yaml", "--plugin", "PIPE"),
+        ("rerun", "PIPE"),
+        ("track", "PIPE", "--rate-hz", "1"),
+        ("reconstruct", "PIPE"),
+        ("compare", "PIPE", "PIPE"),
+    ],
+    ids=" ".join,
+)
+def test_pipes_that_nobody_writes_to_are_waited_for_by_no_command(
+    given: tuple[str, ...], small: Path, shipped: Path, cli: Callable
+) -> None:
+    os.mkfifo(small.parent / "pipe.csv")
+    for name in ("tracks", "poses"):
+        shutil.copy(shipped / "examples" / f"{name}.csv", small.parent)
+    words = [word.replace("PIPE", "pipe.csv") for word in given]
+    paths = [small.parent / word if "." in word else word for word in words]
+    with ended_after(20):
+        done = cli(*paths)
+    assert done.exit_code == 2
+    assert "pipe.csv" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@contextmanager
+def ended_after(seconds: int) -> Iterator[None]:
+    """Raise TimeoutError within where something waits for longer."""
+
+    def stop(*_: object) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_too_little_memory_is_a_sentence(
+    small: Path, swept: Path, cli: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("debrisest.results.store.read_image", full)
+    done = cli("table", small, "--out", swept)
+    assert (done.exit_code, "not enough memory" in done.stderr) == (2, True)

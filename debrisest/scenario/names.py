@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field
 
 from debrisest.draws import case_key
 from debrisest.errors import UserError
+from debrisest.files import alike
 
 MOST_LETTERS = 100
 MOST_LETTERS_OF_A_PART = 50
@@ -79,9 +80,9 @@ def case_name_problems(names: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 def same_on_disk(names: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Yield the names that differ from an earlier one by capitals only."""
+    """Yield the names that some disk takes for an earlier one."""
     same = "a disk that ignores case would mix their files; choose another name"
-    return _not_told_apart(names, str.casefold, same)
+    return _not_told_apart(names, alike, same)
 
 
 def _not_told_apart(
