@@ -76,7 +76,7 @@ def variants(seed: int, done: set[tuple[str, str]], folder: Path) -> Iterator[tu
     base["tables"]["layout"] = base["tables"]["layout"][:1]
     every = base["estimators"]
     for path, name in leaves({key: v for key, v in base.items() if key not in ELSEWHERE}):
-        own = path[1:2] if path[0] == "estimators" else [*every][:3]
+        own = path[1:2] if path[0] == "estimators" else [*every][:2]
         few = changed(base, ("estimators",), {key: every[key] for key in own})
         for key in few["estimators"]:
             few["estimators"][key] = {k: v for k, v in every[key].items() if k != "bound"}
