@@ -92,4 +92,4 @@ def test_tables_that_replace_others_are_told(
     small.write_text(text)
     for odd in ("[]", "[" * 99999, '{"settings": 3}', "\0"):
         (swept / "small" / "tables.origin.json").write_text(odd)
-        assert cli("table", small, "--out", swept).stderr == ""
+        assert "replace" not in cli("table", small, "--out", swept).stderr
