@@ -15,6 +15,10 @@ except ImportError:  # on Windows
     fcntl = None  # type: ignore[assignment]
 
 
+_ours: set[Path] = set()
+"""The temporary files that this process writes to."""
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary path to write to, which takes the place of ``path`` in one step.
@@ -70,6 +74,13 @@ def remove_leftovers(folder: Path) -> None:
                 _remove_unlocked(path)
 
 
+def remove_own() -> None:
+    """Remove the temporary files that this process writes to, for it ends just now."""
+    for path in tuple(_ours):
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
+
+
 def lock(descriptor: int, wait: bool = False) -> None:
     """Lock an open file; raise BlockingIOError where another process has, OSError without locks."""
     if fcntl is None:
@@ -81,11 +92,13 @@ def lock(descriptor: int, wait: bool = False) -> None:
 def _temporary(folder: Path) -> Iterator[Path]:
     """Yield a new file that is locked, and removed if it is still there in the end."""
     path, descriptor = _locked_file(folder)
+    _ours.add(path)
     try:
         yield path
     finally:
         with suppress(OSError):
             path.unlink(missing_ok=True)
+        _ours.discard(path)
         os.close(descriptor)
 
 

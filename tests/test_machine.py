@@ -278,3 +278,20 @@ def test_too_little_memory_is_a_sentence(
     monkeypatch.setattr("debrisest.results.store.read_image", full)
     done = cli("table", small, "--out", swept)
     assert (done.exit_code, "not enough memory" in done.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("command", ["estimate", "import"])
+@pytest.mark.parametrize("name", ["t\udcff.csv", "f\udcfe/tracks.csv"], ids=["file", "folder"])
+def test_paths_that_are_no_text_are_refused_where_results_would_name_them(
+    name: str, command: str, shipped: Path, tmp_path: Path, cli: Callable
+) -> None:
+    path = tmp_path / name
+    path.parent.mkdir(exist_ok=True)
+    shutil.copy(shipped / "examples" / "tracks.csv", path)
+    done = cli(command, path)
+    assert (done.exit_code, "no text in UTF-8" in done.stderr) == (2, True)
+    assert sorted(path.parent.rglob("*.*")) == [path]
+
+
+def test_results_go_to_a_folder_that_is_no_text(small: Path, tmp_path: Path, sweep: Callable):
+    assert sweep(small, tmp_path / "r\udcff", *ONE).exit_code == 0

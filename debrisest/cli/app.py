@@ -24,6 +24,8 @@ from debrisest.cli import (
     track,
 )
 from debrisest.cli.exits import Commands
+from debrisest.files import remove_own
+from debrisest.interrupts import before_end
 
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
@@ -85,4 +87,5 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    before_end(remove_own)
     app()

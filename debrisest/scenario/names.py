@@ -63,6 +63,15 @@ def check_scenario_name(path: Path) -> None:
         raise UserError(f"{path}: a scenario's name has at most {MOST_LETTERS} letters; rename it")
 
 
+def check_path(path: Path) -> None:
+    """Raise UserError for a path, from the root on, that no file of results could name."""
+    try:
+        str(path.absolute()).encode()
+    except UnicodeEncodeError:
+        said = f"{path}: this path is no text in UTF-8, and results name it"
+        raise UserError(f"{said}; rename the file or folder that is not") from None
+
+
 def case_name_problems(names: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the cases that cannot have their names, each with the reason."""
     names = list(names)
