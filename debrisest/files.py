@@ -4,6 +4,7 @@ import errno
 import os
 import secrets
 import socket
+import unicodedata
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -12,6 +13,10 @@ try:
     import fcntl
 except ImportError:  # on Windows
     fcntl = None  # type: ignore[assignment]
+
+
+_ours: set[Path] = set()
+"""The temporary files that this process writes to."""
 
 
 @contextmanager
@@ -34,6 +39,26 @@ def replacing(path: Path) -> Iterator[Path]:
         raise OSError(error.errno, os.strerror(error.errno), str(path)) from None
 
 
+def content(path: Path) -> bytes:
+    """Return what a file holds; OSError also for a pipe or a device, which may never end."""
+    require_ending(path)
+    return path.read_bytes()
+
+
+def require_ending(path: Path) -> None:
+    """Raise OSError for a pipe or a device, which may never end."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise OSError(errno.EINVAL, "this is a pipe or a device, not a file", str(path))
+
+
+def alike(name: str) -> str:
+    """Return a key that names share which some disk takes for one: but for capitals, accents.
+
+    Letters with accents can be written as one sign or as two.
+    """
+    return unicodedata.normalize("NFD", unicodedata.normalize("NFD", name).casefold())
+
+
 def put(path: Path, content: bytes) -> None:
     """Write a file in one step unless it holds just this already, on a disk to read from, say."""
     if not (path.is_file() and path.read_bytes() == content):
@@ -49,6 +74,13 @@ def remove_leftovers(folder: Path) -> None:
                 _remove_unlocked(path)
 
 
+def remove_own() -> None:
+    """Remove the temporary files that this process writes to, for it ends just now."""
+    for path in tuple(_ours):
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
+
+
 def lock(descriptor: int, wait: bool = False) -> None:
     """Lock an open file; raise BlockingIOError where another process has, OSError without locks."""
     if fcntl is None:
@@ -60,11 +92,13 @@ def lock(descriptor: int, wait: bool = False) -> None:
 def _temporary(folder: Path) -> Iterator[Path]:
     """Yield a new file that is locked, and removed if it is still there in the end."""
     path, descriptor = _locked_file(folder)
+    _ours.add(path)
     try:
         yield path
     finally:
         with suppress(OSError):
             path.unlink(missing_ok=True)
+        _ours.discard(path)
         os.close(descriptor)
 
 

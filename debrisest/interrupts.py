@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: the command line ends with a sentence, whatever it is doing just then.
+"""Ctrl-C, SIGTERM, SIGHUP: the command line ends with a sentence, whatever it does just then.
 
 Needs nothing but the standard library's start, so that it can listen before anything is imported.
 """
@@ -10,11 +10,21 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 SENTENCE = "interrupted: finished steps are kept, the same command goes on from there"
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_HANGUPS = tuple(filter(None, (getattr(signal, "SIGHUP", None),)))  # Windows has none
+SIGNALS = (
+    signal.SIGINT,
+    signal.SIGTERM,
+    *(one for one in _HANGUPS if signal.getsignal(one) is signal.SIG_DFL),
+)
+"""What ends a command: a terminal that closes too, unless nohup has it go on."""
+_last_acts: list[Callable[[], None]] = []
 
 
 class Interrupted(KeyboardInterrupt):
-    """A signal asked the command to end; ``exit_code`` is 130 for Ctrl-C, 143 for SIGTERM."""
+    """A signal asked the command to end.
+
+    ``exit_code`` is 130 for Ctrl-C, 143 for SIGTERM, 129 for SIGHUP.
+    """
 
     def __init__(self, number: int = signal.SIGINT) -> None:
         self.exit_code = 128 + number
@@ -22,14 +32,19 @@ class Interrupted(KeyboardInterrupt):
 
 def listen() -> None:
     """End this process at once, with the sentence, from now on whenever a signal asks for it."""
-    for number in _SIGNALS:
+    for number in SIGNALS:
         signal.signal(number, _end)
     sys.unraisablehook = _tell_unless_interrupted
 
 
+def before_end(act: Callable[[], None]) -> None:
+    """Let a signal that ends this process at once do this before."""
+    _last_acts.append(act)
+
+
 def ignore() -> None:
     """Let no signal take the exit code from a command that is over."""
-    for number in _SIGNALS:
+    for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
 
 
@@ -55,7 +70,7 @@ def raised() -> Iterator[Callable[[], None]]:
         yield check
         return
     try:
-        for number in _SIGNALS:
+        for number in SIGNALS:
             signal.signal(number, raise_interrupted)
         yield check
     finally:
@@ -69,6 +84,9 @@ def _tell_unless_interrupted(swallowed: "sys.UnraisableHookArgs") -> None:
 
 
 def _end(number: int, _: object) -> None:
+    for act in _last_acts:
+        with suppress(Exception):
+            act()
     with suppress(Exception):
         sys.stdout.flush()
     os.write(2, f"{SENTENCE}\n".encode())

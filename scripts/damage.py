@@ -1,10 +1,11 @@
 """Damage files of results at random and count what the commands make of it.
 
-``python scripts/damage.py [SEED] [COUNT]`` sweeps one case of the small scenario of the tests,
-damages three files (COUNT times each: bytes, a bit, the end, the structure as h5py edits it, also
-under a new seal; then every page), and runs ``status``, ``table`` and ``sweep`` after each, within
-two seconds of CPU and 64 MB. It prints, for every kind of damage, how many there were, and how many
-ended in a trace, a hang, or wrong tables before the sweep or after it.
+``python scripts/damage.py [SEED] [COUNT] [RUNS]`` sweeps one case of the small scenario of
+the tests (more RUNS make larger files), damages three files (COUNT times each: bytes, a bit, the
+end, the structure as h5py edits it, also under a new seal; then every page), and runs ``status``,
+``table`` and ``sweep`` after each, within two seconds of CPU and 64 MB. It prints, for each kind of
+damage, how many there were, and how many ended in a trace, a hang, or wrong tables before the sweep
+or after it.
 """
 
 import faulthandler
@@ -168,9 +169,9 @@ def _stop(*_: object) -> None:
     raise TimeoutError
 
 
-def reduced(folder: Path) -> Path:
+def reduced(folder: Path, runs: int = 3) -> Path:
     """Write the small scenario with one case, one estimator and one table; return its path."""
-    value = parse(CONFIG.read_text(), CONFIG.name)[0].value
+    value = parse(CONFIG.read_text(), CONFIG.name)[0].value | {"runs": runs}
     del value["estimators"]["wahba"], value["cases"]["fast"], value["tables"]["means"]
     del value["tables"]["published"], value["tables"]["layout"][0], value["tables"]["layout"][1]
     path = folder / CONFIG.name
@@ -208,6 +209,7 @@ def tally(
             found.update((kind, how) for how in _outcomes(config, out, table, right))
             faulthandler.cancel_dump_traceback_later()
             path.write_bytes(content)
+        print(path.name, len(content), "bytes", dict(found), file=sys.stderr, flush=True)
     return found
 
 
@@ -226,9 +228,10 @@ def _outcomes(config: Path, out: Path, table: Path, right: bytes) -> Iterator[st
 
 def main() -> None:
     """Print the counts of all kinds."""
-    seed, count = (int(text) for text in [*sys.argv[1:], "1", "40"][:2])
+    given = sys.argv[1:]
+    seed, count, runs = (int(text) for text in [*given, *("1", "40", "3")[len(given) :]])
     with tempfile.TemporaryDirectory() as folder:
-        config, out = reduced(Path(folder)), Path(folder) / "out"
+        config, out = reduced(Path(folder), runs), Path(folder) / "out"
         for command in ("sweep", "status", "table"):
             run(command, config, "--out", out)
         with limited():

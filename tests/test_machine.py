@@ -3,10 +3,12 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -216,3 +218,80 @@ def test_a_folder_without_rights(
     (told,) = done.stderr.splitlines()
     assert told.startswith(str(folder))
     assert told.endswith(": Permission denied")
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ("import", "PIPE"),
+        ("estimate", "PIPE"),
+        ("estimate", "tracks.csv", "--points", "PIPE"),
+        ("estimate", "tracks.csv", "--attitude", "PIPE"),
+        ("estimate", "tracks.csv", "--camera", "PIPE"),
+        ("estimate", "poses.csv", "--image-times", "PIPE"),
+        ("import", "tracks.csv", "--scenario", "PIPE"),
+        ("validate", "small.yaml", "--plugin", "PIPE"),
+        ("rerun", "PIPE"),
+        ("track", "PIPE", "--rate-hz", "1"),
+        ("reconstruct", "PIPE"),
+        ("compare", "PIPE", "PIPE"),
+    ],
+    ids=" ".join,
+)
+def test_pipes_that_nobody_writes_to_are_waited_for_by_no_command(
+    given: tuple[str, ...], small: Path, shipped: Path, cli: Callable
+) -> None:
+    os.mkfifo(small.parent / "pipe.csv")
+    for name in ("tracks", "poses"):
+        shutil.copy(shipped / "examples" / f"{name}.csv", small.parent)
+    words = [word.replace("PIPE", "pipe.csv") for word in given]
+    paths = [small.parent / word if "." in word else word for word in words]
+    with ended_after(20):
+        done = cli(*paths)
+    assert done.exit_code == 2
+    assert "pipe.csv" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@contextmanager
+def ended_after(seconds: int) -> Iterator[None]:
+    """Raise TimeoutError within where something waits for longer."""
+
+    def stop(*_: object) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_too_little_memory_is_a_sentence(
+    small: Path, swept: Path, cli: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("debrisest.results.store.read_image", full)
+    done = cli("table", small, "--out", swept)
+    assert (done.exit_code, "not enough memory" in done.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("command", ["estimate", "import"])
+@pytest.mark.parametrize("name", ["t\udcff.csv", "f\udcfe/tracks.csv"], ids=["file", "folder"])
+def test_paths_that_are_no_text_are_refused_where_results_would_name_them(
+    name: str, command: str, shipped: Path, tmp_path: Path, cli: Callable
+) -> None:
+    path = tmp_path / name
+    path.parent.mkdir(exist_ok=True)
+    shutil.copy(shipped / "examples" / "tracks.csv", path)
+    done = cli(command, path)
+    assert (done.exit_code, "no text in UTF-8" in done.stderr) == (2, True)
+    assert sorted(path.parent.rglob("*.*")) == [path]
+
+
+def test_results_go_to_a_folder_that_is_no_text(small: Path, tmp_path: Path, sweep: Callable):
+    assert sweep(small, tmp_path / "r\udcff", *ONE).exit_code == 0

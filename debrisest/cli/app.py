@@ -24,11 +24,14 @@ from debrisest.cli import (
     track,
 )
 from debrisest.cli.exits import Commands
+from debrisest.files import remove_own
+from debrisest.interrupts import before_end
 
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 for _variable in ("COLUMNS", "LINES", "SOURCE_DATE_EPOCH"):
-    if not os.environ.get(_variable, "0").isdecimal():  # what rich and numpy trace at
+    _given = os.environ.get(_variable, "0")
+    if not _given.isdecimal() or len(_given) > 10:  # what rich, numpy and matplotlib trace at
         del os.environ[_variable]
 
 COMMANDS: dict[str, Callable[..., None]] = {
@@ -84,4 +87,5 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    before_end(remove_own)
     app()

@@ -103,9 +103,9 @@ def relative_to(folder: Path, path: str | list[str]) -> str | list[str]:
 def write_new(path: Path, text: str, force: bool) -> Path:
     """Write a scenario, or raise UserError where another one is there."""
     from debrisest.errors import UserError
-    from debrisest.files import replacing
+    from debrisest.files import content, replacing
 
-    if path.exists() and path.read_text(encoding="utf-8") != text and not force:
+    if path.exists() and content(path) != text.encode() and not force:
         again = shlex.join(["debrisest", "sweep", str(path), "--out", str(path.parent.parent)])
         raise UserError(
             f"{path}: another scenario is there already; run it with {again}, "

@@ -12,6 +12,8 @@ from debrisest.cli.streams import steady
 from debrisest.errors import UserError, meant
 from debrisest.interrupts import SENTENCE
 
+_NO_MEMORY = "there is not enough memory; fewer --jobs, or a part of the data, need less"
+
 
 class Commands(TyperGroup):
     """The commands; whatever stops one is told in sentences, without a trace."""
@@ -40,6 +42,8 @@ class Commands(TyperGroup):
             if error.errno == errno.EPIPE:
                 raise
             _stop(2, _sentence(error))
+        except MemoryError:
+            _stop(2, _NO_MEMORY)
         except KeyboardInterrupt as error:
             _stop(getattr(error, "exit_code", 130), SENTENCE)
 

@@ -21,6 +21,7 @@ def load_all(
     With settings each is a variant, by its given name or one derived from them.
     """
     from debrisest.errors import UserError
+    from debrisest.files import alike
     from debrisest.plugins.load import load_plugins, read_plugins
     from debrisest.scenario.load import load_scenario
     from debrisest.scenario.variant import variant_of
@@ -39,11 +40,11 @@ def load_all(
             check_published(scenarios[-1])
         except UserError as error:
             problems += error.problems
-    stems = [path.stem.casefold() for path in configs]
+    stems = [alike(path.stem) for path in configs]
     problems += [
         f"{path}: another scenario is called {path.stem} too; results would be mixed"
         for path in configs
-        if stems.count(path.stem.casefold()) > 1
+        if stems.count(alike(path.stem)) > 1
     ]
     if problems:
         raise UserError(problems)

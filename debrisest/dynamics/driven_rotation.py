@@ -10,6 +10,8 @@ from debrisest.attitude.vectors import matrix_of_cross
 
 Torque = Callable[[float, Array], Array]
 """Torque ``(3,)`` in body axes, N m, at a time, s, and a unit quaternion ``q_ib (4,)``."""
+FASTEST = 1e3
+"""rad/s; a body that turns faster takes too long to be integrated."""
 
 
 def driven(
@@ -19,7 +21,7 @@ def driven(
 
     ``times (time,)``, s, ascend from the epoch of ``q0 (4,)`` and ``rate0 (3,)``, which is zero;
     ``inertia (3, 3)`` in kg m^2, about the centre of mass. Integrated by a Runge-Kutta method of
-    order 8, relative tolerance 1e-11.
+    order 8, relative tolerance 1e-11. Raises ValueError where it turns faster than ``FASTEST``.
     """
     from scipy.integrate import solve_ivp
 
@@ -27,6 +29,8 @@ def driven(
 
     def derivative(time: float, state: Array) -> Array:
         q, rate = state[:4], state[4:]
+        if not np.abs(rate).max() <= FASTEST:
+            raise ValueError(f"the body turns faster than {FASTEST:g} rad/s at {time:.3g} s")
         acting = torque(time, quaternion.normalize(q))
         spin = 0.5 * quaternion.multiply(q, np.concatenate([[0.0], rate]))
         return np.concatenate([spin, inverse @ (acting - matrix_of_cross(rate) @ inertia @ rate)])

@@ -22,6 +22,7 @@ from debrisest.roles import SourcePart
 from debrisest.scenario.document import Document
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import validated
+from debrisest.scenario.names import check_path
 from debrisest.scenario.schema import measured_model
 from debrisest.tracks.recognise import Kind, recognise
 
@@ -51,9 +52,11 @@ def measured_keys(file: Path, options: Mapping[str, Any]) -> Text:
     ``options`` are its further keys; those without a value are left out, paths stay as they are.
     Raises `UserError` for a file that is not known, and for keys of no use for it.
     """
+    given = {key: value for key, value in options.items() if value not in (None, [])}
+    for path in (file, *(value for value in given.values() if isinstance(value, Path))):
+        check_path(path)
     part = _PARTS.get(recognise(file)[0], MeasuredTracks)
     kind = kind_of(part)
-    given = {key: value for key, value in options.items() if value not in (None, [])}
     if useless := [key for key in given if key not in part.model_fields]:
         names = ", ".join(f"--{key.replace('_', '-')}" for key in useless)
         raise UserError(f"{file}: it holds {kind}, for which {names} is of no use; leave it out")
@@ -89,7 +92,8 @@ def import_measured(
     head = _head(file, paths[1], like)
     _write(paths[0], data, file)
     with replacing(paths[1]) as temporary:
-        temporary.write_text(head + yaml.safe_dump(text, sort_keys=False, allow_unicode=True))
+        content = head + yaml.safe_dump(text, sort_keys=False, allow_unicode=True)
+        temporary.write_text(content, encoding="utf-8")
     return Imported(*paths, [*data.get("notes", []), *told])
 
 

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from debrisest.catalog import CATALOG
 from debrisest.errors import UserError
+from debrisest.files import content
 from debrisest.plugins.contents import parts_of, problems_in, quantities_of
 from debrisest.vocabulary import VOCABULARY
 
@@ -50,7 +51,7 @@ def read_plugins(paths: Iterable[Path]) -> tuple[Plugin, ...]:
     found, problems = {}, []
     for path in paths:
         try:
-            found[str(path.resolve())] = path.read_bytes()
+            found[str(path.resolve())] = content(path)
         except OSError as error:
             problems.append(f"--plugin {path}: {error.strerror}; give a Python file with parts")
     if problems:

@@ -7,7 +7,7 @@ package.
 
 from collections.abc import Container, Mapping
 from io import BytesIO
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -20,7 +20,16 @@ from debrisest.results.told import require_as_told
 from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, has_runs
 
 _NUMBERS = (np.float64, np.uint8)
-_NO_COORDINATE = "This is a netCDF dimension but not a netCDF variable."
+_UNIT = np.dtype(object, metadata={"vlen": str})
+_NO_COORDINATE = b"This is a netCDF dimension but not a netCDF variable."
+
+
+class _Dataset(NamedTuple):
+    """A dataset, and what HDF5 takes long to tell."""
+
+    id: Any
+    dtype: Any
+    shape: tuple[int, ...]
 
 
 def image_of(data: Data, attributes: Mapping[str, Any], frames: Mapping[str, str]) -> bytes:
@@ -77,7 +86,9 @@ def frames_of(file: Any) -> dict[str, str]:
     return {name: str(frame) for name, frame in said if frame is not None}
 
 
-def _datasets(file: Any, attributes: Mapping[str, Any], names: Container[str]) -> dict[str, Any]:
+def _datasets(
+    file: Any, attributes: Mapping[str, Any], names: Container[str]
+) -> dict[str, _Dataset]:
     """Return the named datasets, or raise ValueError where they are not those that are told."""
     found = {name: _dataset(file, name) for name in file if name in names}
     there = {name: dataset for name, dataset in found.items() if dataset is not None}
@@ -85,7 +96,7 @@ def _datasets(file: Any, attributes: Mapping[str, Any], names: Container[str]) -
     return there
 
 
-def _dataset(file: Any, name: str) -> Any:
+def _dataset(file: Any, name: str) -> _Dataset | None:
     """Return a dataset that the vocabulary has; None for others, and for the length of an axis.
 
     Raises ValueError unless it lies in the file itself and has its axes, type and unit.
@@ -96,13 +107,14 @@ def _dataset(file: Any, name: str) -> Any:
         raise ValueError(f"{name} is no dataset of this file")
     if name not in VOCABULARY or (name in COORDINATES and _is_length(dataset)):
         return None
-    kind = dataset.dtype
-    if not (kind in _NUMBERS or h5py.check_string_dtype(kind) is not None):
-        raise ValueError(f"{name} is of the type {kind}")
-    if _text(dataset, b"units") != VOCABULARY[name].unit:
+    found = _Dataset(dataset, dataset.dtype, dataset.shape)
+    if not (found.dtype in _NUMBERS or h5py.check_string_dtype(found.dtype) is not None):
+        raise ValueError(f"{name} is of the type {found.dtype}")
+    h5a.open(dataset, b"units").read(unit := np.empty((), _UNIT))
+    if unit.item() != VOCABULARY[name].unit.encode():
         raise ValueError(f"{name} is not in {VOCABULARY[name].unit}")
-    _lengths(name, dataset.shape)
-    return dataset
+    _lengths(name, found.shape)
+    return found
 
 
 def _lengths(name: str, shape: tuple[int, ...]) -> dict[str, int]:
@@ -119,27 +131,23 @@ def _is_elsewhere(properties: Any) -> bool:
 
 
 def _is_length(scale: Any) -> bool:
-    return bool(h5a.exists(scale, b"NAME")) and _text(scale, b"NAME").startswith(_NO_COORDINATE)
+    if not h5a.exists(scale, b"NAME"):
+        return False
+    name = h5a.open(scale, b"NAME")
+    name.read(text := np.empty(name.shape, name.dtype))
+    return bool(text.item().startswith(_NO_COORDINATE))
 
 
-def _text(dataset: Any, attribute: bytes) -> str:
-    """Return the text of an attribute; raise KeyError where it is missing."""
-    found = h5a.open(dataset, attribute)
-    value = np.empty(found.shape, found.dtype)
-    found.read(value)
-    return str(value.item(), "utf-8")
-
-
-def _values(dataset: Any, part: slice = slice(None)) -> NDArray[Any]:
+def _values(dataset: _Dataset, part: slice = slice(None)) -> NDArray[Any]:
     """Return a dataset, or a part along its first axis."""
     first, end, _ = part.indices(*dataset.shape[:1])
     value = np.empty((max(0, end - first), *dataset.shape[1:]), dataset.dtype)
     if value.shape == dataset.shape:
-        dataset.read(h5s.ALL, h5s.ALL, value)
+        dataset.id.read(h5s.ALL, h5s.ALL, value)
     else:
-        space = dataset.get_space()
+        space = dataset.id.get_space()
         space.select_hyperslab((first, *(0 for _ in value.shape[1:])), value.shape)
-        dataset.read(h5s.create_simple(value.shape), space, value)
+        dataset.id.read(h5s.create_simple(value.shape), space, value)
     return np.array([text.decode() for text in value]) if value.dtype.kind == "O" else value
 
 
@@ -157,7 +165,7 @@ def _write_data(file: Any, data: Data) -> None:
         for axis, (label, length) in enumerate(_lengths(name, value.shape).items()):
             if label not in scales:
                 scales[label] = file.create_dataset(label, data=np.zeros(length))
-                scales[label].make_scale(f"{_NO_COORDINATE}{length:10d}")
+                scales[label].make_scale(f"{_NO_COORDINATE.decode()}{length:10d}")
             dataset.dims[axis].attach_scale(scales[label])
 
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from debrisest.catalog import required_keys
 from debrisest.errors import UserError, allowed_names, meant
+from debrisest.files import require_ending
 from debrisest.plugins.load import Plugin, load_plugins
 from debrisest.scenario.case import Case
 from debrisest.scenario.checks import case_problems, file_problems
@@ -113,16 +114,16 @@ def _laid_on(base: Document, over: Document) -> Document:
 
 
 def _read(path: Path) -> str:
-    if path.is_fifo():
-        raise UserError(f"{path}: this is a pipe; give a scenario file (YAML)")
     try:
+        require_ending(path)
         with path.open("rb") as file:
             raw = file.read(MOST_BYTES + 1)
     except IsADirectoryError:
         raise UserError(f"{path}: this is a folder; give a scenario file (YAML)") from None
     except OSError as error:
         reason = error.strerror or "cannot be read"
-        beside = meant(path.name, (one.name for one in path.parent.glob("*.yaml")))
+        others = (one.name for one in path.parent.glob("*.yaml") if one.name != path.name)
+        beside = meant(path.name, others)
         raise UserError(
             f"{path}: {reason}; give the path of a scenario file (YAML){beside}"
         ) from None

@@ -6,6 +6,7 @@ from debrisest.clock import Clock
 from debrisest.errors import UserError
 from debrisest.scenario.document import Document, Problem
 from debrisest.scenario.mistakes import validated
+from debrisest.scenario.names import check_path
 from debrisest.scenario.schema import SIMULATED, measured_model
 
 
@@ -13,6 +14,7 @@ def told_by_data(document: Document, folder: Path) -> tuple[Document, list[Probl
     """Return a document with the keys that its data tell, and what is wrong with these."""
     if "measured" not in document.value:
         return document, []
+    check_path(folder)
     asked = Document({"measured": document.value["measured"]}, document.places)
     found, problems = validated(asked, measured_model(), folder)
     problems += [

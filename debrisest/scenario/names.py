@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field
 
 from debrisest.draws import case_key
 from debrisest.errors import UserError
+from debrisest.files import alike
 
 MOST_LETTERS = 100
 MOST_LETTERS_OF_A_PART = 50
@@ -62,6 +63,15 @@ def check_scenario_name(path: Path) -> None:
         raise UserError(f"{path}: a scenario's name has at most {MOST_LETTERS} letters; rename it")
 
 
+def check_path(path: Path) -> None:
+    """Raise UserError for a path, from the root on, that no file of results could name."""
+    try:
+        str(path.absolute()).encode()
+    except UnicodeEncodeError:
+        said = f"{path}: this path is no text in UTF-8, and results name it"
+        raise UserError(f"{said}; rename the file or folder that is not") from None
+
+
 def case_name_problems(names: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the cases that cannot have their names, each with the reason."""
     names = list(names)
@@ -79,9 +89,9 @@ def case_name_problems(names: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 def same_on_disk(names: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Yield the names that differ from an earlier one by capitals only."""
+    """Yield the names that some disk takes for an earlier one."""
     same = "a disk that ignores case would mix their files; choose another name"
-    return _not_told_apart(names, str.casefold, same)
+    return _not_told_apart(names, alike, same)
 
 
 def _not_told_apart(

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
+from debrisest.files import alike
 from debrisest.tracks.epochs import Epochs, group_times, scatter
 from debrisest.tracks.report import Report
 from debrisest.tracks.rows import PIXEL, POINT, Rows, check_rows
@@ -91,8 +92,9 @@ def _told(rows: Rows) -> tuple[str, ...]:
         notes.append(f"{len(rows.features)} features only: an attitude needs three, not in line")
     folded: dict[str, str] = {}
     for name in rows.features:
-        if (other := folded.setdefault(name.casefold(), name)) != name:
-            notes.append(f"features {other} and {name} differ in case only: are they the same?")
+        if (other := folded.setdefault(alike(name), name)) != name:
+            pair = f"features {other} and {name}"
+            notes.append(f"{pair} differ in capitals or accents only: are they the same?")
     once = np.bincount(rows.feature[rows.feature >= 0], minlength=len(rows.features)) == 1
     if once.any() and len(rows.lines) > len(rows.features):
         names = [name for name, single in zip(rows.features, once) if single]

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from debrisest.errors import UserError
+from debrisest.files import content
 
 _WIDE = (b"\xff\xfe", b"\xfe\xff")  # byte-order marks of UTF-16
 
@@ -32,7 +33,7 @@ def _bytes(path: Path) -> bytes:
     if path.is_dir():
         raise UserError(f"{path}: this is a folder; give a file")
     try:
-        return path.read_bytes()
+        return content(path)
     except FileNotFoundError:
         raise UserError(f"{path}: there is no such file") from None
     except (OSError, ValueError) as error:

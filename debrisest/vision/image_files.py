@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from debrisest.arrays import Array
 from debrisest.errors import UserError
-from debrisest.files import replacing
+from debrisest.files import content, replacing, require_ending
 from debrisest.vision.libraries import vision_library
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm")
@@ -147,9 +147,10 @@ def _check_numbers(folder: Path, names: Sequence[str]) -> None:
 
 def _image(path: Path) -> NDArray[np.uint8]:
     cv2 = vision_library("cv2")
-    content = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    whole = len(content) > 0 and not _cut_off(content.tobytes())
-    image = cv2.imdecode(content, cv2.IMREAD_GRAYSCALE) if whole else None
+    coded = content(path)
+    whole = coded and not _cut_off(coded)
+    pixels = np.frombuffer(coded, dtype=np.uint8)
+    image = cv2.imdecode(pixels, cv2.IMREAD_GRAYSCALE) if whole else None
     if image is None:
         raise UserError(f"{path}: not an image that can be read; it may be damaged")
     return np.asarray(image)
@@ -180,8 +181,9 @@ def _reduced(image: NDArray[np.uint8], widest: int | None) -> NDArray[np.uint8]:
 
 
 def _times(path: Path, names: Sequence[str]) -> Array | None:
-    if not path.is_file():
+    if not path.exists():
         return None
+    require_ending(path)
     with path.open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     try:

@@ -133,3 +133,11 @@ def test_the_bound_leaves_outliers_out_and_keeps_covariances(experiment):
     ):
         spread = np.sqrt(np.diagonal(covariance, 0, -2, -1))
         np.testing.assert_allclose(spread, sigma[:, [0, 5]], rtol=1e-12)
+
+
+def test_where_all_runs_are_lost_there_is_nothing_to_smooth(experiment):
+    test = experiment(2, 4, 3)
+    lost = replay(test.model, np.inf * test.prior, test.covariance, test.measured)
+    final = smooth(test.model, test.prior, test.covariance, test.measured, lost)
+    assert np.isnan(final.state[:, -1]).all()
+    np.testing.assert_array_equal(final.status, lost.status)

@@ -27,7 +27,7 @@ def alive(group: int) -> list[str]:
     return subprocess.run(command, capture_output=True, text=True).stdout.split()
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGINT, signal.SIGHUP])
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_no_worker_is_left(
     number: signal.Signals, jobs: int, small: Path, tmp_path: Path, process: Callable
@@ -52,9 +52,30 @@ def test_a_signal_during_imports_ends_at_once_with_a_sentence() -> None:
     assert (ended.returncode, ended.stderr) == (143, interrupts.SENTENCE + "\n")
 
 
+def test_a_signal_during_the_writing_of_a_file_leaves_no_temporary_one(tmp_path: Path) -> None:
+    code = (
+        "import os, signal, sys; from pathlib import Path\n"
+        "from debrisest import files, interrupts\n"
+        "interrupts.before_end(files.remove_own); interrupts.listen()\n"
+        "with files.replacing(Path(sys.argv[1])): os.kill(os.getpid(), signal.SIGTERM)"
+    )
+    ended = subprocess.run([sys.executable, "-c", code, tmp_path / "file"])
+    assert (ended.returncode, list(tmp_path.iterdir())) == (143, [])
+
+
+def test_who_asked_for_it_goes_on_when_the_terminal_closes() -> None:
+    code = (
+        "import os, signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"
+        "from debrisest import interrupts; interrupts.listen()\n"
+        "os.kill(os.getpid(), signal.SIGHUP); print('on')"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "on\n", "")
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_an_exception_that_is_swallowed_is_raised_at_the_next_step(number: signal.Signals) -> None:
-    before = [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)]
+    before = [signal.getsignal(one) for one in interrupts.SIGNALS]
     try:
         interrupts.listen()
         with pytest.raises(interrupts.Interrupted) as raised, interrupts.raised() as check:
@@ -63,7 +84,7 @@ def test_an_exception_that_is_swallowed_is_raised_at_the_next_step(number: signa
                 os.kill(os.getpid(), number)
             check()
     finally:
-        for one, handler in zip((signal.SIGINT, signal.SIGTERM), before):
+        for one, handler in zip(interrupts.SIGNALS, before):
             signal.signal(one, handler)
     assert raised.value.exit_code == 128 + number
 

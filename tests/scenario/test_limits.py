@@ -29,7 +29,7 @@ def test_each_is_told_with_its_line_in_cases_and_grids_too(small: Path, cli: Any
     small.write_text(text + "grid:\n  sensors.points.noise_m: [1, 1e99]\n")
     lines = cli("validate", small).stderr.splitlines()
     assert len(lines) == 2
-    assert "cases.fast.motion.rate_deg_s.0: at most 100000" in lines[0]
+    assert "cases.fast.motion.rate_deg_s.0: at most 10000" in lines[0]
     assert "grid.sensors.points.noise_m.1: at most 1e+12" in lines[1]
 
 

@@ -87,19 +87,37 @@ def test_cases_that_would_draw_the_same_are_refused(
 
 
 def test_devices_and_endless_files_are_no_scenarios(tmp_path: Path, cli: Any) -> None:
-    link = tmp_path / "zero.yaml"
-    link.symlink_to("/dev/zero")
-    result = cli("validate", link)
-    assert result.exit_code == 2
-    assert "MB" in result.stderr
+    (tmp_path / "zero.yaml").symlink_to("/dev/zero")
+    with (tmp_path / "sparse.yaml").open("wb") as file:
+        file.truncate(2**40)
+    for name, why in (("zero", "device"), ("sparse", "MB")):
+        result = cli("validate", tmp_path / f"{name}.yaml")
+        assert (result.exit_code, why in result.stderr) == (2, True)
 
 
 def test_a_pipe_that_nobody_writes_to_is_no_scenario(tmp_path: Path, cli: Any) -> None:
     os.mkfifo(pipe := tmp_path / "pipe.yaml")
     result = cli("validate", pipe)
     assert (result.exit_code, result.stderr[:-1]) == (
-        2, f"{pipe}: this is a pipe; give a scenario file (YAML)"
-    )  # fmt: skip
+        2,
+        f"{pipe}: this is a pipe or a device, not a file; give the path of a scenario file (YAML)",
+    )
+
+
+def test_accents_in_one_sign_or_two_tell_no_scenarios_and_no_features_apart(
+    small: Path, cli: Any
+) -> None:
+    twins = small.with_name("caf\u00e9.yaml"), small.parent / "b" / "Cafe\u0301.yaml"
+    twins[1].parent.mkdir()
+    for path in twins:
+        path.write_text(small.read_text().replace("published: small.csv", "published: null"))
+    result = cli("validate", *twins)
+    assert (result.exit_code, result.stderr.count("results would be mixed")) == (2, 2)
+    assert cli("validate", twins[0], small).exit_code == 0
+    text = twins[0].read_text().replace("    c: {", "    \u00e9: {")
+    twins[0].write_text(text.replace("    d: {", "    e\u0301: {"))
+    result = cli("validate", twins[0])
+    assert (result.exit_code, "two features have one name" in result.stderr) == (2, True)
 
 
 def test_texts_beyond_the_basic_plane_are_texts(small: Path) -> None:

@@ -159,7 +159,7 @@ def test_refused_with_the_line(write: Write, content: str, said: str) -> None:
     [
         (["0,a,1,2,3", "0,b,2,2,3", "1,a,1,2,3", "1,b,2,2,3"], "2 features only"),
         (["0,a,1,2,3", "0,b,2,2,3", "0,c,2,3,3"], "one epoch only"),
-        ([*ROWS, "1,P1,1,2,3"], "features p1 and P1 differ in case only"),
+        ([*ROWS, "1,P1,1,2,3"], "features p1 and P1 differ in capitals or accents only"),
         ([*ROWS, "1,q1,1,2,3"], "seen in one row only: q1"),
     ],
 )

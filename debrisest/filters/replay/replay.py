@@ -98,10 +98,32 @@ def smooth(
     end = filtered.state[:, last], filtered.covariance[:, -1]
     counts = {"cost": np.nan} | ({} if reference is None else {"cost_of_truth": np.nan})
     writer = EstimatesWriter(model.error_names, *end, last + 1, keep, counts, outcomes=ReplayStatus)
-    model = model.of(writer.runs)
+    if len(writer.runs):
+        _smooth(model.of(writer.runs), prior, covariance, measured, end[0], gate, writer, reference)
+    found = writer.estimates()
+    return found._replace(
+        nis=filtered.nis,
+        nis_dof=filtered.nis_dof,
+        status=np.where(filtered.diverged_at < 0, found.status, filtered.status),
+        counts=filtered.counts | found.counts,
+    )
+
+
+def _smooth(
+    model: ReplayModel,
+    prior: Array,
+    covariance: Array,
+    measured: Array,
+    end: Array,
+    gate: bool,
+    writer: EstimatesWriter,
+    reference: Array | None,
+) -> None:
+    """Write the motion of the writer's runs, of which `model` is, from the filter's last states."""
+    last = measured.shape[1] - 1
     with np.errstate(all="ignore"):
         arc = take(measured_arc(model, prior, covariance, measured), writer.runs)
-        start = model.rewind(end[0][writer.runs], last)
+        start = model.rewind(end[writer.runs], last)
         if gate:
             solution = robust_newton(model, arc, [start], last, last, _ITERATIONS)
         else:
@@ -117,13 +139,6 @@ def smooth(
             beside = reference_of(model, arc, reference[writer.runs])
             writer.count(last, {"cost_of_truth": beside.cost(arc.weight, last)})
     writer.conclude(_status(solution))
-    found = writer.estimates()
-    return found._replace(
-        nis=filtered.nis,
-        nis_dof=filtered.nis_dof,
-        status=np.where(filtered.diverged_at < 0, found.status, filtered.status),
-        counts=filtered.counts | found.counts,
-    )
 
 
 def anchors(first: int, epochs: int, ratio: float = RATIO) -> list[int]:

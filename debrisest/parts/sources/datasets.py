@@ -8,6 +8,7 @@ import numpy as np
 
 from debrisest.arrays import Data
 from debrisest.errors import UserError
+from debrisest.files import content
 from debrisest.results import store
 from debrisest.roles import SourcePart
 from debrisest.vocabulary import AXIS_LENGTH, VOCABULARY, has_runs
@@ -46,7 +47,7 @@ class Datasets(SourcePart):
 
     def digest(self, folder: Path) -> str:
         """Return the SHA-256 of the file."""
-        return sha256((folder / self.file).read_bytes()).hexdigest()
+        return sha256(content(folder / self.file)).hexdigest()
 
 
 def _require_times(path: Path, data: Data) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from debrisest.arrays import Array, Data
 from debrisest.errors import UserError
+from debrisest.files import content
 from debrisest.parts.sources.epochs import on_epochs, with_gaps
 from debrisest.roles import Positive, SourcePart
 from debrisest.tracks.attitude import attitude_at, read_attitude
@@ -99,4 +100,4 @@ def _each(paths: Iterable[Path]) -> Iterable[Path]:
 
 
 def _checksum(path: Path) -> bytes:
-    return sha256(path.read_bytes()).digest()
+    return sha256(content(path)).digest()

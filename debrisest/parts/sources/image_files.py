@@ -9,6 +9,7 @@ from pydantic import Field
 
 from debrisest.arrays import Array, Data
 from debrisest.errors import UserError
+from debrisest.files import content
 from debrisest.roles import Positive, SourcePart
 from debrisest.tracks.calibration import read_calibration
 from debrisest.tracks.types import Camera
@@ -100,7 +101,7 @@ class MeasuredImages(SourcePart):
         files = [*(used or inside), *([folder / self.camera] if self.camera else [])]
         whole = sha256()
         for file in files:
-            whole.update(sha256(file.read_bytes()).digest())
+            whole.update(sha256(content(file)).digest())
         return whole.hexdigest()
 
     def _times(self, images: ImageSequence) -> Array:

@@ -1,6 +1,7 @@
 """A target that is known: the features on a body and its inertia."""
 
 from typing import Annotated, Literal
+from unicodedata import normalize
 
 import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag
@@ -80,6 +81,8 @@ class Feature(Keys):
 def _at_least_three(points: dict[str, Feature]) -> dict[str, Feature]:
     if len(points) < 3:
         raise ValueError(f"an attitude needs at least three features, found {len(points)}")
+    if len({normalize("NFC", name) for name in points}) < len(points):
+        raise ValueError("two features have one name, with an accent as a sign of its own in one")
     first = np.array([feature.position_m for feature in list(points.values())[:3]])
     sides = first[1:] - first[0]
     if np.linalg.matrix_rank(sides, tol=1e-6 * float(np.abs(sides).max() or 1)) < 2:

@@ -37,7 +37,7 @@ def replaced(path: Path, now: dict[str, Any]) -> str:
         return ""
     try:
         before = json.loads(path.read_text(encoding="utf-8"))["settings"]
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return ""
     if not isinstance(before, dict) or before == json.loads(json.dumps(now["settings"])):
         return ""

@@ -16,6 +16,7 @@ import pandas as pd
 
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.errors import UserError, allowed_names, meant
+from debrisest.files import require_ending
 from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.window import window_of
@@ -122,13 +123,13 @@ def _estimator(column: str) -> bool:
 def _read(path: Path) -> list[tuple[int, list[str]]]:
     """Return the rows that are not empty, with their lines."""
     try:
-        if path.exists() and not path.is_file():
-            raise UserError(f"{path}: published values must be a CSV file; this is none")
+        require_ending(path)
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = csv.reader(file)
             return [(rows.line_num, row) for row in rows if row]
     except OSError as error:
-        beside = meant(path.name, (one.name for one in path.parent.glob("*.csv")))
+        others = (one.name for one in path.parent.glob("*.csv") if one.name != path.name)
+        beside = meant(path.name, others)
         said = f"{path}: published values cannot be read: {error.strerror}{beside}"
         raise UserError(said) from None
     except (UnicodeDecodeError, csv.Error):

@@ -90,5 +90,6 @@ def test_tables_that_replace_others_are_told(
     done = sweep(rewrite(small, "sensors.points.noise_m=0.02"), swept, *SLOW)
     assert "sensors.points.noise_m was 0.01, is 0.02" in done.stderr
     small.write_text(text)
-    (swept / "small" / "tables.origin.json").write_text("[]")
-    assert "replace" not in cli("table", small, "--out", swept).stderr
+    for odd in ("[]", "[" * 99999, '{"settings": 3}', "\0"):
+        (swept / "small" / "tables.origin.json").write_text(odd)
+        assert "replace" not in cli("table", small, "--out", swept).stderr
