@@ -133,6 +133,6 @@ def _steps(arc: Arc, times: Array) -> Array:
     """Steps (..., 8) that turn the end of the arc by about as much each."""
     span = 1.0 + np.abs(times - arc.epoch).max(initial=0.0)
     turned = 1.0 + np.linalg.norm(arc.rate, axis=-1) * span
-    by_rate = np.broadcast_to(span, (*turned.shape, 3))
-    by_inertia = np.broadcast_to(turned[..., None], (*turned.shape, 5))
-    return np.asarray(_TURN_OF_STEP / np.concatenate([by_rate, by_inertia], axis=-1))
+    result = np.empty((*turned.shape, 8))
+    result[..., :3], result[..., 3:] = _TURN_OF_STEP / span, _TURN_OF_STEP / turned[..., None]
+    return result

@@ -132,13 +132,16 @@ def _harmonics(motion: Body, moment: Array, momentum: float, side: float) -> tup
     _rates(2.0 * quarter / shape[0] * phase, motion, rate)
     circled = np.abs(rate[0])
     speed = (np.sum(moment * rate0**2) + momentum * circled) / (momentum + moment[0] * circled)
-    turn = np.exp(-2.0j * math.pi * phase)
+    cos, sin = np.cos(2.0 * math.pi * phase), np.sin(2.0 * math.pi * phase)
     tails, total = np.empty(count // 2, dtype=np.complex128), 0.0j
     for number in range(count // 2, 0, -1):
-        term = 0.0j
+        real, imaginary, place = 0.0, 0.0, 0
         for k in range(count):
-            term += speed[k] * turn[(k * number) % count]
-        total += 2.0 * term / (number * count)
+            real += speed[k] * cos[place]
+            imaginary -= speed[k] * sin[place]
+            place += number
+            place -= count if place >= count else 0
+        total += complex(real, imaginary) * 2.0 / (number * count)
         tails[count // 2 - number] = total
     return np.mean(speed), tails
 
