@@ -33,7 +33,7 @@ def conjugate(q: Array) -> Array:
 def normalize(q: Array) -> Array:
     """``q`` scaled to unit norm; a zero quaternion, which is no rotation, gives NaN."""
     with np.errstate(invalid="ignore"):
-        return np.asarray(q / np.linalg.norm(q, axis=-1, keepdims=True))
+        return np.asarray(q / _length(q))
 
 
 def rotate(q: Array, v: Array) -> Array:
@@ -51,7 +51,7 @@ def to_matrix(q: Array) -> Array:
         *(2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
         *(2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
     ]
-    return np.stack(elements, axis=-1).reshape(*np.shape(w), 3, 3)
+    return _gathered(elements).reshape(*np.shape(w), 3, 3)
 
 
 def from_matrix(matrix: Array) -> Array:
@@ -64,7 +64,7 @@ def from_matrix(matrix: Array) -> Array:
     largest = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
     row = np.take_along_axis(products, largest[..., None, None], axis=-2)[..., 0, :]
     row = np.where(row[..., :1] < 0.0, -row, row)
-    return np.asarray(row / np.linalg.norm(row, axis=-1, keepdims=True))
+    return np.asarray(row / _length(row))
 
 
 def _components(q: Array) -> tuple[Array, Array, Array, Array]:
@@ -81,12 +81,25 @@ def _products(matrix: Array) -> Array:
         *(c - g, b + d, 1.0 - a + e - i, f + h),
         *(d - b, c + g, f + h, 1.0 - a - e + i),
     ]
-    return np.stack(elements, axis=-1).reshape(*np.shape(a), 4, 4)
+    return _gathered(elements).reshape(*np.shape(a), 4, 4)
+
+
+def _gathered(elements: list[Array]) -> Array:
+    """Return elements of one shape along a new last axis, much cheaper than by stacking."""
+    result = np.empty((*np.shape(elements[0]), len(elements)), elements[0].dtype)
+    for k, element in enumerate(elements):
+        result[..., k] = element
+    return result
+
+
+def _length(vector: Array) -> Array:
+    """Return lengths (..., 1)."""
+    return np.asarray(np.sqrt(np.add.reduce(vector * vector, axis=-1, keepdims=True)))
 
 
 def exp(rotation_vector: Array) -> Array:
     """Unit quaternion of a rotation vector ``(..., 3)`` (axis times angle)."""
-    angle = np.linalg.norm(rotation_vector, axis=-1, keepdims=True)
+    angle = _length(rotation_vector)
     scale = 0.5 * np.sinc(angle / (2.0 * np.pi))
     return np.concatenate([np.cos(0.5 * angle), scale * rotation_vector], axis=-1)
 
@@ -94,7 +107,7 @@ def exp(rotation_vector: Array) -> Array:
 def log(q: Array) -> Array:
     """Shortest rotation vector ``(..., 3)`` of ``q``, of length at most pi."""
     scalar, vector = q[..., :1], q[..., 1:]
-    sine = np.linalg.norm(vector, axis=-1, keepdims=True)
+    sine = _length(vector)
     angle = 2.0 * np.arctan2(sine, np.abs(scalar))
     ratio = np.divide(angle, sine, out=np.full_like(angle, 2.0), where=sine != 0.0)
     return np.asarray(np.where(scalar < 0.0, -ratio, ratio) * vector)
@@ -103,5 +116,5 @@ def log(q: Array) -> Array:
 def angle_between(p: Array, q: Array) -> Array:
     """Angle in ``[0, pi]`` of the rotation that takes ``p`` to ``q``, accurate near 0 and pi."""
     difference = multiply(conjugate(p), q)
-    sine = np.linalg.norm(difference[..., 1:], axis=-1)
+    sine = _length(difference[..., 1:])[..., 0]
     return np.asarray(2.0 * np.arctan2(sine, np.abs(difference[..., 0])))

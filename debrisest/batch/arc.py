@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.dynamics import log_inertia
@@ -49,6 +50,8 @@ class Course(NamedTuple):
 
 def along(arc: Arc, times: Array) -> tuple[Array, Array]:
     """Return ``q_if (..., time, 4)`` and rates ``(..., time, 3)`` at ``times (time,)``, s."""
+    if compiled.available():
+        return _along_compiled(arc, times)
     moments, axes = log_inertia.principal(arc.log_inertia)
     q_fb = quaternion.from_matrix(axes)
     rate_b = (arc.rate[..., None, :] @ axes)[..., 0, :]
@@ -70,6 +73,8 @@ def course(arc: Arc, times: Array) -> Course:
         arc.log_inertia[..., None, :] + shift[..., 3:],
     )
     q, rate = along(copies, times)
+    if compiled.available():
+        return _course_compiled(q, rate, step)
     others = (..., slice(1, None), slice(None), slice(None))
     turn = quaternion.multiply(q[others], quaternion.conjugate(q[..., :1, :, :]))
     turn_by, rate_by = np.zeros((2, *arc.q.shape[:-1], len(times), 3, UNKNOWNS))
@@ -102,10 +107,32 @@ def joined(*arcs: Arc) -> Arc:
     return Arc(arcs[0].epoch, *(np.concatenate(parts) for parts in zip(*(arc[1:] for arc in arcs))))
 
 
+def _along_compiled(arc: Arc, times: Array) -> tuple[Array, Array]:
+    from debrisest.batch import arc_loops
+
+    shape = arc.q.shape[:-1]
+    q, rate = (np.ascontiguousarray(part.reshape(-1, part.shape[-1])) for part in arc[1:3])
+    logs = log_inertia.matrix(arc.log_inertia).reshape(-1, 3, 3)
+    q, rate = arc_loops.along(times - arc.epoch, q, rate, logs)
+    return q.reshape(*shape, *q.shape[1:]), rate.reshape(*shape, *rate.shape[1:])
+
+
+def _course_compiled(q: Array, rate: Array, step: Array) -> Course:
+    """Return what copies at (..., 9, time, 4) and their rates say of the first one of each."""
+    from debrisest.batch import arc_loops
+
+    shape, times = q.shape[:-3], q.shape[-2]
+    turn_by, rate_by = arc_loops.derivatives(
+        q.reshape(-1, 9, times, 4), rate.reshape(-1, 9, times, 3), step.reshape(-1, 8)
+    )
+    by = [part.reshape(*shape, *part.shape[1:]) for part in (turn_by, rate_by)]
+    return Course(q[..., 0, :, :], rate[..., 0, :, :], *by)
+
+
 def _steps(arc: Arc, times: Array) -> Array:
     """Steps (..., 8) that turn the end of the arc by about as much each."""
     span = 1.0 + np.abs(times - arc.epoch).max(initial=0.0)
     turned = 1.0 + np.linalg.norm(arc.rate, axis=-1) * span
-    by_rate = np.broadcast_to(span, (*turned.shape, 3))
-    by_inertia = np.broadcast_to(turned[..., None], (*turned.shape, 5))
-    return np.asarray(_TURN_OF_STEP / np.concatenate([by_rate, by_inertia], axis=-1))
+    result = np.empty((*turned.shape, 8))
+    result[..., :3], result[..., 3:] = _TURN_OF_STEP / span, _TURN_OF_STEP / turned[..., None]
+    return result

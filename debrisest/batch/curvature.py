@@ -86,6 +86,8 @@ class _Valley:
         scouts = [_Scout(self, way, sign) for way in bent for sign in (1.0, -1.0)]
         for _ in range(_TRIES):
             going = [scout for scout in scouts if not scout.there]
+            if not going:
+                break
             ends = self.floors([scout.start() for scout in going], [scout.way for scout in going])
             for scout, end, rise in zip(going, ends, self.rises(ends)):
                 scout.judge(end, float(rise) / FAR**2)

@@ -104,11 +104,7 @@ def summed(told: Told, derivative: Array) -> Normal:
 
 def vector_of(matrix: NDArray[Any]) -> Array:
     """``sum z x y``-like vector (..., 3) of ``A = sum z y^T``: that of ``A - A^T``, y cross z."""
-    return np.stack(
-        [
-            matrix[..., 2, 1] - matrix[..., 1, 2],
-            matrix[..., 0, 2] - matrix[..., 2, 0],
-            matrix[..., 1, 0] - matrix[..., 0, 1],
-        ],
-        axis=-1,
-    )
+    result = np.empty(matrix.shape[:-1])
+    for k, (i, j) in enumerate(((2, 1), (0, 2), (1, 0))):
+        result[..., k] = matrix[..., i, j] - matrix[..., j, i]
+    return result

@@ -25,13 +25,13 @@ BASIS = np.array(
 
 def inertia(s: Array) -> Array:
     """``exp(S) (..., 3, 3)``, of determinant one."""
-    values, vectors = np.linalg.eigh(_matrix(s))
+    values, vectors = np.linalg.eigh(matrix(s))
     return _rebuilt(np.exp(values), vectors)
 
 
 def principal(s: Array) -> tuple[Array, Array]:
     """Principal moments (..., 3) of that inertia and axes (..., 3, 3), a proper rotation."""
-    values, axes = np.linalg.eigh(_matrix(s))
+    values, axes = np.linalg.eigh(matrix(s))
     return np.exp(values), axes * np.sign(np.linalg.det(axes))[..., None, None]
 
 
@@ -49,7 +49,7 @@ def with_derivative(s: Array) -> tuple[Array, Array, Array]:
     derivative along B is ``V ((V^T B V) o G) V^T`` with the divided differences
     ``G_ij = exp((l_i + l_j) / 2) sinh(h) / h``, ``h = (l_i - l_j) / 2``.
     """
-    values, vectors = np.linalg.eigh(_matrix(s))
+    values, vectors = np.linalg.eigh(matrix(s))
     mean = 0.5 * (values[..., :, None] + values[..., None, :])
     half = 0.5 * (values[..., :, None] - values[..., None, :])
     close = np.abs(half) < 1e-4
@@ -65,12 +65,13 @@ def with_derivative(s: Array) -> tuple[Array, Array, Array]:
 def by_turn(s: Array) -> Array:
     """Derivative ``(..., 5, 3)`` of ``s (..., 5)`` by a small turn of the body axes."""
     turns = matrix_of_cross(np.eye(3))
-    tensor = _matrix(s)[..., None, :, :]
+    tensor = matrix(s)[..., None, :, :]
     flat = (tensor @ turns - turns @ tensor).reshape(*s.shape[:-1], 3, 9)
     return np.asarray(BASIS.reshape(5, 9) @ np.swapaxes(flat, -1, -2))
 
 
-def _matrix(s: Array) -> Array:
+def matrix(s: Array) -> Array:
+    """Return ``S (..., 3, 3)``."""
     return np.asarray((s[..., None, :] @ BASIS.reshape(5, 9)).reshape(*s.shape[:-1], 3, 3))
 
 

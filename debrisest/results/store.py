@@ -13,6 +13,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
+from debrisest import compiled
 from debrisest.arrays import Data
 from debrisest.errors import UserError
 from debrisest.files import replacing
@@ -194,4 +195,5 @@ def _without_label(file: BinaryIO) -> Condition:
 
 @cache
 def _software() -> str:
-    return ", ".join(f"{name} {version(name)}" for name in ("debrisest", "numpy", "scipy", "h5py"))
+    names = ["debrisest", "numpy", "scipy", "h5py", *["numba"] * bool(compiled.version())]
+    return ", ".join(f"{name} {version(name)}" for name in names)

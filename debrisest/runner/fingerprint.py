@@ -6,6 +6,8 @@ from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 
+from debrisest import compiled
+
 _BELOW = ("numpy", "scipy", "h5py", "pydantic")
 
 
@@ -16,5 +18,5 @@ def fingerprint() -> dict[str, str]:
     source = sha256()
     for path in sorted(package.rglob("*.py")):
         source.update(f"{path.relative_to(package).as_posix()}\0".encode() + path.read_bytes())
-    versions = {name: version(name) for name in _BELOW}
+    versions = {name: version(name) for name in _BELOW} | {"numba": compiled.version()}
     return {"debrisest": source.hexdigest()[:16], "python": platform.python_version(), **versions}

@@ -172,6 +172,15 @@ def _same(one: Fit, other: Fit) -> BoolArray:
     return np.asarray(distance < offset.shape[-1])
 
 
+def leads_to(begun: Fit, best: Fit) -> BoolArray:
+    """Whether fits of the first windows are where those of longer ones are, (run,).
+
+    Led on, they would end in the same place.
+    """
+    points = np.where(begun.at.placed[..., None], begun.at.points, best.at.points)
+    return _same(begun._replace(at=begun.at._replace(points=points)), best)
+
+
 def redrawn(task: Problem, attempt: int) -> Fit:
     """Better solution of the first windows from another first guess."""
     return _solve(task, _redrawn(task, attempt))[0]

@@ -19,6 +19,7 @@ from debrisest.filters.landmarks.batch_start import (
     adopt,
     batch_start,
     confirmed,
+    leads_to,
     ordered,
     redrawn,
 )
@@ -118,9 +119,11 @@ def _again(
             break
         part, rival = task.of(bad), take(found.best, bad)
         if attempt == 0 and batch.mirrored:
-            left, new = _led(part, _from_mirror(part, take(before.best, bad)), rival, ends, PRUNE)
+            begun = _from_mirror(part, take(before.best, bad))
         else:
-            left, new = _led(part, redrawn(part, attempt), rival, ends, np.inf)
+            begun = redrawn(part, attempt)
+            found.settled[bad] = leads_to(begun, rival)
+        left, new = _led(part, begun, rival, found.settled[bad], ends)
         found.restarts[np.delete(bad, left)] += 1
         if len(left) == 0:
             continue
@@ -134,21 +137,28 @@ def _again(
 
 
 def _led(
-    task: Problem, begun: Fit, rival: Fit, ends: Sequence[int], most: float
+    task: Problem, begun: Fit, rival: Fit, settled: BoolArray, ends: Sequence[int]
 ) -> tuple[IntArray, Fit]:
     """Lead fits through windows to the last end; which runs get there, and their fits.
 
-    One whose cost on its way is by ``most`` higher than its rival's per component is given up.
+    One that is settled, or whose cost on its way is far higher than its rival's per component, is
+    given up.
     """
-    runs = np.arange(len(task.parameters))
     ratio = rival.found.value / np.maximum(rival.found.dof, 1)
+    runs = np.flatnonzero(~settled & _near(begun, ratio))
+    begun = take(begun, runs)
     for end in ends:
-        begun = _thin(task.of(runs), begun, end)
-        kept = np.flatnonzero(~(begun.found.value - begun.found.dof * ratio[runs] >= most))
-        runs, begun = runs[kept], take(begun, kept)
         if len(runs) == 0:
             break
+        begun = _thin(task.of(runs), begun, end)
+        kept = np.flatnonzero(_near(begun, ratio[runs]))
+        runs, begun = runs[kept], take(begun, kept)
     return runs, begun
+
+
+def _near(begun: Fit, ratio: Array) -> BoolArray:
+    """Whether the cost of a fit is not far above that of a rival with this cost per component."""
+    return np.asarray(~(begun.found.value - begun.found.dof * ratio >= PRUNE))
 
 
 def _from_mirror(task: Problem, best: Fit) -> Fit:

@@ -47,7 +47,7 @@ class LandmarkBatch(_LandmarkFilter):
     iterated filter carries it on. Up to the end of the first windows it is their own.
     """
 
-    version = 4
+    version = 5
     kind: Literal["landmark_batch"]
     windows_s: list[Positive] = [50.0, 100.0, 200.0, 350.0, 600.0]
     """Lengths of the windows."""

@@ -18,6 +18,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.dynamics import clohessy_wiltshire, tumbling_in_orbit
@@ -170,6 +171,12 @@ def _rotation(
 ) -> tuple[Array, Array]:
     """Attitude and rate (run, last + 1, 7), and their errors by those of epoch 0."""
     shape = tumbling_in_orbit.body(core[..., LOG_INERTIA])
+    if compiled.available():
+        from debrisest.dynamics.tumbling_in_orbit_loops import rotation
+
+        pace = known.mean_motion, 3.0 * known.mean_motion**2 * known.gravity_gradient
+        start = np.ascontiguousarray(core[..., :_TURNED])
+        return rotation(start, *shape, pace, known.step / count, last, count)
     products = tumbling_in_orbit.torque_products(shape)
     q, w, n, duration = core[..., Q], core[..., RATE], known.mean_motion, known.step / count
     turned = np.empty((len(core), last + 1, _TURNED))

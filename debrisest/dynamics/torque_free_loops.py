@@ -1,0 +1,165 @@
+"""The closed form of torque-free rotation as plain loops over one body, for `debrisest.compiled`.
+
+The formulas are those of `torque_free`, `nutation` and `elliptic`, where their words are.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from debrisest.arrays import Array, ComplexArray
+from debrisest.compiled import compiled
+
+Body = tuple[Any, ...]
+_MOST = 24  # Landen transformations and steps of means, of which a handful is needed
+
+
+@compiled
+def body_of(rate0: Array, moments: Array) -> Body:
+    """Return what the motion of ``rate0 (3)`` and ``moments (3)`` is made of, axes in order."""
+    order = np.argsort(moments)
+    if _gap(rate0, moments, order) < 0.0:
+        order = order[::-1].copy()
+    rate, moment, slope = rate0[order], moments[order], _slopes(moments)[order]
+    around = -slope[1] * slope[2] * rate[0] ** 2
+    across = slope[0] * slope[2] * rate[1] ** 2
+    shape = np.array([1e-150, 1.0, 1.0, 0.0])  # frequency, complement, dn^2, k^2 sn^2
+    if not around <= 1e-290 * across:
+        square = around + across
+        shape[0] = math.sqrt(square)
+        shape[1] = max(_gap(rate0, moments, order) / square, 1e-290)
+        shape[2], shape[3] = around / square, across / square
+    quarter = _quarter_period(shape[1])
+    moduli = _landen_moduli(shape[1])
+    momentum = max(math.sqrt(np.sum((moment * rate) ** 2)), 1e-150)
+    side = math.copysign(1.0, rate[0])
+    hand = 1.0 if (order[0] + 1) % 3 == order[1] else -1.0
+    motion = (rate, slope, shape, quarter, moduli)
+    harmonics = _harmonics(motion, moment, momentum, side)
+    return (motion, harmonics, moment / momentum, side, hand, order)
+
+
+@compiled
+def at(times: Array, body: Body, rate: Array, about: Array) -> None:
+    """Write rate (3, time) and attitude (4, time) about the momentum, in the order of the axes.
+
+    ``times (time,)``, s, count from the epoch.
+    """
+    motion, harmonics, by_rate, side, hand, _ = body
+    _rates(times, motion, rate)
+    turn = _turned(times, harmonics, 2.0 * motion[3] / motion[2][0])
+    for t in range(len(times)):
+        about[0, t], about[1, t] = math.cos(0.5 * turn[t]), math.sin(0.5 * turn[t])
+    for t in range(len(times)):
+        cos, sin = about[0, t], about[1, t]
+        cosine = math.sqrt(0.5 + 0.5 * side * by_rate[0] * rate[0, t])
+        b = 0.5 * by_rate[1] * rate[1, t] / cosine
+        c = 0.5 * by_rate[2] * rate[2, t] / cosine
+        about[0, t], about[1, t] = cos * cosine, side * sin * cosine
+        cos *= side * hand
+        about[2, t], about[3, t] = sin * b + cos * c, sin * c - cos * b
+
+
+@compiled
+def _gap(rate: Array, moments: Array, order: Any) -> float:
+    slope, square = _slopes(moments)[order], rate[order] ** 2
+    gap: float = slope[1] * slope[0] * square[2] - slope[1] * slope[2] * square[0]
+    return gap
+
+
+@compiled
+def _slopes(moments: Array) -> Array:
+    slope = np.empty(3)
+    for i in range(3):
+        slope[i] = (moments[(i + 1) % 3] - moments[(i + 2) % 3]) / moments[i]
+    return slope
+
+
+@compiled
+def _quarter_period(complement: float) -> float:
+    """Complete integral K by the arithmetic and geometric means."""
+    a, b = 1.0, math.sqrt(complement)
+    for _ in range(_MOST):
+        if not abs(a - b) > 1e-9 * a:
+            break
+        a, b = 0.5 * (a + b), math.sqrt(a * b)
+    return math.pi / (a + b)
+
+
+@compiled
+def _landen_moduli(complement: float) -> Array:
+    k_prime, moduli, count = math.sqrt(complement), np.empty((_MOST, 2)), 0
+    while count < _MOST:
+        moduli[count] = (1.0 - k_prime) / (1.0 + k_prime), 2.0 * k_prime / (1.0 + k_prime)
+        k_prime = 2.0 * math.sqrt(k_prime) / (1.0 + k_prime)
+        count += 1
+        if not moduli[count - 1, 0] > 1e-9:
+            break
+    return moduli[:count]
+
+
+@compiled
+def _rates(times: Array, motion: Body, rate: Array) -> None:
+    (a, b, c), (slope_a, slope_b, slope_c), shape, quarter, moduli = motion
+    for t in range(len(times)):
+        angle = shape[0] * times[t] / (4.0 * quarter)
+        angle = 2.0 * math.pi * (angle - np.rint(angle))
+        rate[0, t], rate[1, t], rate[2, t] = 1.0, math.sin(angle), math.cos(angle)
+    for k in range(len(moduli) - 1, -1, -1):
+        modulus, rest = moduli[k]
+        for t in range(len(times)):
+            dn, sn, cn = rate[0, t], rate[1, t], rate[2, t]
+            per = 1.0 / (1.0 + modulus * sn * sn)
+            rate[0, t] = (rest + modulus * cn * cn) * per
+            rate[1, t], rate[2, t] = sn * (1.0 + modulus) * per, cn * dn * per
+    for t in range(len(times)):
+        dn, sn, cn = rate[0, t], rate[1, t], rate[2, t]
+        span = sn / shape[0]
+        per = 1.0 / (shape[2] + shape[3] * cn * cn)
+        rate[0, t] = (a * dn + slope_a * b * c * span * cn) * per
+        rate[1, t] = (b * cn * dn + slope_b * c * a * span) * per
+        rate[2, t] = (c * cn + slope_c * a * b * span * dn) * per
+
+
+@compiled
+def _harmonics(motion: Body, moment: Array, momentum: float, side: float) -> tuple[float, Any]:
+    """Mean of the precession's rate and the sums of its series, highest first."""
+    rate0, _, shape, quarter, _ = motion
+    enough = max(quarter, 2.0) if math.isfinite(quarter) else 2.0
+    count = 14 * math.ceil(enough)
+    rate, phase = np.empty((3, count)), np.arange(count) / count
+    _rates(2.0 * quarter / shape[0] * phase, motion, rate)
+    circled = np.abs(rate[0])
+    speed = (np.sum(moment * rate0**2) + momentum * circled) / (momentum + moment[0] * circled)
+    cos, sin = np.cos(2.0 * math.pi * phase), np.sin(2.0 * math.pi * phase)
+    tails, total = np.empty(count // 2, dtype=np.complex128), 0.0j
+    for number in range(count // 2, 0, -1):
+        real, imaginary, place = 0.0, 0.0, 0
+        for k in range(count):
+            real += speed[k] * cos[place]
+            imaginary -= speed[k] * sin[place]
+            place += number
+            place -= count if place >= count else 0
+        total += complex(real, imaginary) * 2.0 / (number * count)
+        tails[count // 2 - number] = total
+    return np.mean(speed), tails
+
+
+@compiled
+def _turned(times: Array, harmonics: tuple[float, ComplexArray], period: float) -> Array:
+    """Turn about the angular momentum since the epoch (time,), rad."""
+    mean, tails = harmonics
+    cos, sin = np.empty(len(times)), np.empty(len(times))
+    for t in range(len(times)):
+        angle = math.pi * times[t] / period
+        cos[t], sin[t] = math.cos(angle), math.sin(angle)
+    real, imaginary = np.zeros(len(times)), np.zeros(len(times))
+    for tail in tails:
+        for t in range(len(times)):
+            c, s = cos[t] * cos[t] - sin[t] * sin[t], 2.0 * sin[t] * cos[t]
+            x, y = real[t], imaginary[t]
+            real[t] = x * c - y * s + tail.real
+            imaginary[t] = x * s + y * c + tail.imag
+    scale = period / math.pi
+    return mean * times + scale * sin * (cos * real - sin * imaginary)
