@@ -24,6 +24,7 @@ from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.described import described
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.scenario.schema import ScenarioFile, scenario_model
+from debrisest.scenario.variant import variant_called
 from debrisest.shipped import scenario_path
 from debrisest.show.tables.published import check_published
 from debrisest.show.tables.tabulate import chosen, read_by_tables, tabulate, write_tables
@@ -32,19 +33,26 @@ _MOST_REASONS = 3
 
 
 def load(
-    config: str | Path, /, plugins: Iterable[str | Path] = (), **settings: Any
+    config: str | Path,
+    /,
+    plugins: Iterable[str | Path] = (),
+    variant: str | None = None,
+    **settings: Any,
 ) -> LoadedScenario:
     """Return a scenario, by its file or the name of a shipped one, with settings laid on it.
 
     A setting is a key with its value; ``**{"motion.rate_deg_s": [8, 1, 4]}`` reaches inner keys.
-    Raises UserError with every problem of the file.
+    With settings it is a variant, whose results have a folder of their own, by the name ``variant``
+    or one made of the settings. Raises UserError with every problem of the file.
     """
     own_parts = read_plugins(map(Path, plugins))
     overrides = [
         f"{key}={json.dumps(value, default=_plain, ensure_ascii=False)}"
         for key, value in settings.items()
     ]
-    return load_scenario(scenario_path(Path(config)), overrides, own_parts)
+    scenario = load_scenario(scenario_path(Path(config)), overrides, own_parts)
+    name = variant_called(variant, overrides)
+    return scenario.called(name) if name else scenario
 
 
 def run(

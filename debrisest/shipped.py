@@ -19,6 +19,11 @@ def shipped_names() -> list[str]:
     return sorted(path.stem for path in _folder().glob("*.yaml"))
 
 
+def is_shipped(path: Path) -> bool:
+    """Return whether a file is that of a shipped scenario, which its name alone stands for."""
+    return path.absolute() == (_folder() / path.name).absolute()
+
+
 def scenario_path(config: Path) -> Path:
     """Return the file of a scenario that is given by its path or by its name.
 

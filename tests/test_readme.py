@@ -80,3 +80,25 @@ def test_the_signs_of_the_tables_follow_from_their_figures() -> None:
                 assert signs[verdict(float(figure), float(published), factor, 0.0)] == sign
                 told += 1
     assert told == 12 * 6
+
+
+SPEED = (ROOT / "docs" / "speed.md").read_text(encoding="utf-8")
+
+
+def test_the_time_of_a_sweep_is_that_of_the_table_of_shares() -> None:
+    """CPU seconds of all steps on two cores, with at most half as much again for all else."""
+    minutes = re.search(r"about (\d+)\s+minutes\s+on\s+two\s+cores", README)
+    together = re.search(r"^\|\s+\|\s+together\s.*?\| ([\d.]+) +\|", SPEED, re.M)
+    assert minutes is not None and together is not None
+    assert 1.0 < 120 * int(minutes[1]) / float(together[1]) < 1.5
+
+
+def test_the_ratios_of_speed_are_those_of_the_benchmark() -> None:
+    told = re.search(r"take a (\d+)rd of filterpy's time\s+and (\w+) that of\s+compiled", README)
+    rows = dict(re.findall(r"^\| (unscented, 14 states.*?) \| .*? \| ([\d.]+) \(", SPEED, re.M))
+    peer, compiled = (float(ratio) for ratio in rows.values())
+    assert told is not None
+    assert (told[1], told[2]) == (
+        f"{peer:.0f}",
+        {2: "twice", 3: "three times"}[round(1 / compiled)],
+    )

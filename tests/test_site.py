@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from debrisest.scenario.load import load_scenario
+from debrisest.show.plots.kinds import FIGURES
+
 DOCS = Path(__file__).parent.parent / "docs"
 _COMMAND = r"(?:^    |^\$ |`(?=debrisest \w+ ))debrisest ([a-z]+)( [^`\n]*)?"
 TUTORIAL = (DOCS / "tutorial.md").read_text(encoding="utf-8")
@@ -45,6 +48,17 @@ def test_every_page_is_in_the_index_and_every_picture_in_the_gallery() -> None:
     assert sorted(index) == sorted(pages)
     shown = re.findall(r"\(images/([\w.]+)\)", (DOCS / "gallery.md").read_text(encoding="utf-8"))
     assert sorted(shown) == sorted(path.name for path in (DOCS / "images").iterdir())
+
+
+def test_the_figures_of_the_gallery_are_those_of_scenarios_and_cases_that_there_are(
+    shipped: Path,
+) -> None:
+    gallery = (DOCS / "gallery.md").read_text(encoding="utf-8")
+    told = re.findall(r"`debrisest plot ([\w-]+)(?: --case (\S+))? --figure (\w+)`", gallery)
+    assert len(told) == gallery.count("--figure ") - 1
+    for name, case, figure in told:
+        assert figure in FIGURES
+        assert not case or case in load_scenario(shipped / f"{name}.yaml").cases
 
 
 @pytest.mark.parametrize("page", sorted(path.name for path in DOCS.glob("*.md")))

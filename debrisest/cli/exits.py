@@ -34,7 +34,7 @@ class Commands(TyperGroup):
         try:
             return super().invoke(ctx)
         except BadParameter as error:
-            error.message += _meant(error)
+            error.message = error.message.replace("Value error, ", "") + _meant(error)
             raise
         except UserError as error:
             _stop(2, *error.problems)

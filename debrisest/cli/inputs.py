@@ -24,12 +24,11 @@ def load_all(
     from debrisest.files import alike
     from debrisest.plugins.load import load_plugins, read_plugins
     from debrisest.scenario.load import load_scenario
-    from debrisest.scenario.variant import variant_of
+    from debrisest.scenario.variant import variant_called
     from debrisest.shipped import scenario_path
     from debrisest.show.tables.published import check_published
 
-    if variant is not None:
-        _check_variant(variant)
+    name = variant_called(variant, settings or ())
     laid_on = [*(settings or ()), *([f"keep={keep}"] if keep else [])]
     own_parts = read_plugins(plugins or ())
     load_plugins(own_parts)
@@ -48,21 +47,7 @@ def load_all(
     ]
     if problems:
         raise UserError(problems)
-    name = variant or variant_of(settings or ())
     return [one.called(name) for one in scenarios] if name else scenarios
-
-
-def _check_variant(name: str) -> None:
-    """Raise UserError for a name that no folder should have."""
-    from pydantic import TypeAdapter, ValidationError
-
-    from debrisest.errors import UserError
-    from debrisest.scenario.names import CaseName
-
-    try:
-        TypeAdapter(CaseName).validate_python(name)
-    except ValidationError as error:
-        raise UserError(f"--variant {name}: {error.errors()[0]['ctx']['error']}") from None
 
 
 def computable(scenarios: Sequence["LoadedScenario"]) -> list["LoadedScenario"]:

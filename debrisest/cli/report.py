@@ -1,7 +1,8 @@
 """The command that writes all that was found into one file for a browser."""
 
+import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from debrisest.runner.plan import Selection
     from debrisest.scenario.load import LoadedScenario
     from debrisest.show.report.chapter import Chapter
+    from debrisest.show.report.figures import Picture
 
 
 def report(
@@ -36,18 +38,36 @@ def report(
     settings: Settings = None,
     variant: Variant = None,
     plugins: Plugins = None,
-    figures: Annotated[
-        bool, Option("--figures/--no-figures", help="With those of the first case.")
-    ] = True,
+    figures: Annotated[bool, Option("--figures/--no-figures", help="With or without.")] = True,
+    figures_of: Annotated[
+        list[str] | None,
+        Option("--figures-of", metavar="CASE", help="Of this case, not the first (repeatable)."),
+    ] = None,
     to: Annotated[Path | None, Option("--to", help="File (default: report.html in DIR).")] = None,
     quiet: Unprinted = False,
 ) -> None:
     """Write the results that are up to date into one file of HTML that needs no network."""
     scenarios = load_all(configs, settings, plugins, variant)
     selection = select(scenarios, runs, case, estimator)
-    path = write_report(scenarios, out, selection, settings or (), figures, to)
+    _check_cases(scenarios, figures_of or ())
+    shown = (figures_of or ()) if figures else None
+    path = write_report(scenarios, out, selection, settings or (), shown, to)
     if not quiet:
         print(f"wrote {path}")
+
+
+def _check_cases(scenarios: Sequence["LoadedScenario"], names: Sequence[str]) -> None:
+    """Raise UserError for cases that no scenario has."""
+    from debrisest.errors import UserError, allowed_names
+
+    known = dict.fromkeys(name for scenario in scenarios for name in scenario.cases)
+    problems = [
+        f"--figures-of {name}: unknown case; {allowed_names(name, known)}"
+        for name in names
+        if name not in known
+    ]
+    if problems:
+        raise UserError(problems)
 
 
 def write_report(
@@ -55,17 +75,20 @@ def write_report(
     out: Path,
     selection: "Selection",
     settings: Sequence[str] = (),
-    figures: bool = True,
+    figures_of: Sequence[str] | None = (),
     to: Path | None = None,
 ) -> Path:
-    """Write the report; return its path. Tells which scenarios have no results."""
+    """Write the report; return its path. Tells which scenarios have no results.
+
+    With the figures of some cases, or with one of each kind if none are named, or without (None).
+    """
     from debrisest.errors import UserError
     from debrisest.files import replacing
     from debrisest.show.report.page import page
 
     chapters = []
     for scenario in scenarios:
-        if told := _chapter(scenario, out, selection, settings, figures):
+        if told := _chapter(scenario, out, selection, settings, figures_of):
             chapters.append(told)
         else:
             print(f"left out of the report: {scenario.name}: no results", file=sys.stderr)
@@ -84,7 +107,7 @@ def _chapter(
     out: Path,
     selection: "Selection",
     settings: Sequence[str],
-    figures: bool,
+    figures_of: Sequence[str] | None,
 ) -> "Chapter | None":
     from functools import partial
 
@@ -93,7 +116,6 @@ def _chapter(
     from debrisest.results.status import up_to_date
     from debrisest.runner.plan import Selection, plan
     from debrisest.show.report.chapter import chapter
-    from debrisest.show.report.figures import pictures
     from debrisest.show.tables.tabulate import chosen, read_by_tables, tabulate
 
     steps = plan(scenario, out, selection, STAGES)
@@ -103,5 +125,33 @@ def _chapter(
     wanted = plan(scenario, out, Selection(selection.runs), read_by_tables(scenario))
     rows, _ = tabulate(scenario, out, wanted)
     asked = partial(selection.asks_for, means=scenario.common.tables.means)
-    drawn = pictures(scenario, out, steps) if figures else iter(())
-    return chapter(scenario, results, steps, chosen(rows, asked), settings, drawn)
+    drawn = () if figures_of is None else _pictures(scenario, out, selection, figures_of)
+    command = shlex.join(_named(scenario, out, settings))
+    return chapter(scenario, command, results, steps, chosen(rows, asked), settings, drawn)
+
+
+def _named(scenario: "LoadedScenario", out: Path, settings: Sequence[str]) -> Iterator[str]:
+    """Yield the arguments by which a command finds the same results."""
+    from debrisest.scenario.variant import variant_of
+    from debrisest.shipped import is_shipped
+
+    yield scenario.path.stem if is_shipped(scenario.path) else str(scenario.path)
+    yield from (text for setting in settings for text in ("--set", setting))
+    if scenario.variant != variant_of(settings):
+        yield from ("--variant", scenario.variant)
+    if out != RESULTS:
+        yield from ("--out", str(out))
+
+
+def _pictures(
+    scenario: "LoadedScenario", out: Path, selection: "Selection", cases: Sequence[str]
+) -> Iterator["Picture"]:
+    from dataclasses import replace
+
+    from debrisest.results.address import STAGES
+    from debrisest.runner.plan import plan
+    from debrisest.show.report.figures import pictures
+
+    named = [case for case in cases if case in scenario.cases]
+    asked = replace(selection, cases=named or selection.cases)
+    return pictures(scenario, out, plan(scenario, out, asked, STAGES), bool(named))

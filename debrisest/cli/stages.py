@@ -161,10 +161,12 @@ def bring(
     _tell_where(scenarios, out)
     if dry_run:
         steps = [step for scenario in scenarios for step in plan(scenario, out, selection)]
-        due = [step for step in steps if step.reason]
+        due = [step for step in steps if step.is_due]
         for step in due:
             print(f"{step.name}: {step.reason}")
-        print(f"{len(due)} of {len(steps)} steps would run")
+        same = len([step for step in steps if step.same])
+        linked = f", {same} are the same in another variant" if same else ""
+        print(f"{len(due)} of {len(steps)} steps would run{linked}")
         return False
     failures = bring_up_to_date(scenarios, out, selection, machine)
     for name, why in [*failures.items()][:_MOST_FAILURES]:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from debrisest.errors import UserError
+from debrisest.errors import UserError, meant
 from debrisest.results import store
 from debrisest.results.address import Address
 from debrisest.results.chunk import Chunk
@@ -20,7 +20,9 @@ def open_results(folder: Path | str) -> Results:
     """
     results = find_results(Path(folder))
     if not results.chunks:
-        told = [f"{folder}: no results of a scenario there", *_first_few(results.left_out)]
+        beside = (path.name for path in Path(folder).parent.glob("*/"))
+        near = "" if Path(folder).is_dir() else meant(Path(folder).name, beside)
+        told = [f"{folder}: no results of a scenario there{near}", *_first_few(results.left_out)]
         inner = sorted({path.parent.parent.name for path in Path(folder).glob("*/*/*.h5")})
         hint = [f"open one of the folders in it: {', '.join(inner)}"] * bool(inner)
         raise UserError("; ".join([*told, *hint]))

@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -14,8 +15,10 @@ from debrisest.results.address import Address
 from debrisest.results.assessed import SIMULATED
 from debrisest.results.status import Wanted, out_of_date
 from debrisest.runner.stages.pipeline import STAGES, stages_of
+from debrisest.runner.taken_over import same_file, variants_beside
 from debrisest.scenario.case import Case
 from debrisest.scenario.load import LoadedScenario
+from debrisest.scenario.resolved import resolved
 from debrisest.scenario.schema import MOST_RUNS
 
 RUNS_PER_FILE = 20
@@ -31,6 +34,13 @@ class Step(Wanted):
     """The step that is computed with this one: it needs trajectories that are not all kept."""
     computed_before: bool = False
     """Whether it is such a step, of which nothing is left to do when its turn comes."""
+    same: Path | None = None
+    """The file of another variant that is the same, to be linked in the place of a computation."""
+
+    @property
+    def is_due(self) -> bool:
+        """Return whether it has to be computed."""
+        return bool(self.reason) and self.same is None
 
     @property
     def kin(self) -> tuple[str, ...]:
@@ -72,11 +82,12 @@ def plan(
 ) -> list[Step]:
     """Return every step that the selection needs, upstream first, with the reasons to run.
 
-    A simulation that points of a grid share is one step.
+    A simulation that points of a grid share is one step. What another variant has already is told.
     Labels and lengths of files are looked at, and all bytes of the stages that are ``verified``:
     whoever reads data verifies them then.
     """
     cases = [name for name in scenario.cases if name in (selection.cases or scenario.cases)]
+    beside, each = variants_beside(out, scenario.name), RUNS_PER_FILE
     steps: list[Step] = []
     for name in cases:
         case = scenario.cases[name]
@@ -84,8 +95,8 @@ def plan(
         estimators = [one for one in case.estimators if one in wanted_of]
         wanted = case.runs(selection.runs)
         chunks = [
-            _Chunk(case, out, first, min(RUNS_PER_FILE, wanted - first), selection, verified)
-            for first in range(0, wanted, RUNS_PER_FILE)
+            _Chunk(case, out, beside, first, min(each, wanted - first), selection, verified)
+            for first in range(0, wanted, each)
         ]
         by_stage = zip(*(chunk.steps(estimators) for chunk in chunks), strict=True)
         steps += [step for stage in by_stage for step in stage]
@@ -123,6 +134,8 @@ class _Chunk:
 
     case: Case
     out: Path
+    beside: Sequence[str]
+    """The folders of other variants of the scenario."""
     first: int
     runs: int
     selection: Selection
@@ -137,7 +150,8 @@ class _Chunk:
         simulate = self._step("simulate", "", ())
         steps = [simulate, *self._estimator_steps(simulate, estimators)]
         most = max(self.runs, *self.held)
-        return _paired([replace(step, runs=most) if step.reason else step for step in steps])
+        anew = [replace(step, runs=most) if step.reason else step for step in steps]
+        return _paired([replace(s, same=None) if s.runs > self.runs else s for s in anew])
 
     def _estimator_steps(self, simulate: Step, estimators: Sequence[str]) -> Iterator[Step]:
         for estimator in estimators:
@@ -147,17 +161,18 @@ class _Chunk:
                 if not _within(stage, self.selection.last_stage):
                     break
                 done = (*done, self._step(stage, estimator, done))
-                if stage == "assess" and done[-1].reason:
+                if stage == "assess" and done[-1].is_due:
                     done = self._with_trajectories(done)
             yield from done[1:]
 
     def _with_trajectories(self, done: tuple[Step, ...]) -> tuple[Step, ...]:
         """Return the steps, with the filter due if its file lacks what the last one reads."""
         *before, filtered, assess = done
-        known = filtered.reason or filtered.address.stage != "filter"
-        if known or self.whole[filtered.path] >= filtered.runs:
+        known = filtered.is_due or filtered.address.stage != "filter"
+        if known or (not filtered.same and self.whole[filtered.path] >= filtered.runs):
             return done
-        filtered = replace(filtered, reason=f"{assess.address.stage} needs its trajectories")
+        why = filtered.reason or f"{assess.address.stage} needs its trajectories"
+        filtered = replace(filtered, reason=why, same=None)
         return (*before, filtered, replace(assess, upstream=(*before, filtered)))
 
     def _step(self, stage: str, estimator: str, upstream: tuple[Step, ...]) -> Step:
@@ -176,11 +191,18 @@ class _Chunk:
         )
         depth = store.Depth.BYTES if stage in self.verified else store.Depth.LABEL
         found = store.inspect(step.path, depth)
-        reason, notice = out_of_date(step, found, self._asked_for(address, upstream))
+        asked = self._asked_for(address, upstream)
+        reason, notice = out_of_date(step, found, asked)
         same = store.fits(found.attributes, step.attributes)
         self.whole[step.path] = found.attributes.get("whole_runs", self.runs)
         self.held.append(found.attributes.get("runs", 0) if same and reason else 0)
-        return replace(step, reason=reason, notice=notice)
+        there = reason and not asked and not notice
+        other = same_file(step, self.out, self.beside, depth, self._told) if there else None
+        return replace(step, reason=reason, notice=notice, same=other)
+
+    @cached_property
+    def _told(self) -> str:
+        return resolved(self.case) if self.beside else ""
 
     def _asked_for(self, address: Address, upstream: tuple[Step, ...]) -> str:
         """Return why a step runs whatever its file holds."""
@@ -188,7 +210,7 @@ class _Chunk:
             return "asked for by --force"
         if address in self.selection.again:
             return "a run of it failed or diverged"
-        before = [f"{step.address.stage} runs before it" for step in upstream if step.reason]
+        before = [f"{step.address.stage} runs before it" for step in upstream if step.is_due]
         return "".join(before[:1])
 
 
@@ -197,7 +219,7 @@ def _paired(steps: list[Step]) -> list[Step]:
     pairs = list(steps)
     for index, (filtered, assess) in enumerate(pairwise(steps)):
         both = (filtered.address.stage, assess.address.stage) == ("filter", "assess")
-        if both and filtered.reason and assess.reason:
+        if both and filtered.is_due and assess.is_due:
             pairs[index + 1] = replace(assess, computed_before=True)
             pairs[index] = replace(filtered, then=pairs[index + 1])
     return pairs

@@ -19,6 +19,7 @@ from debrisest.runner.pace import Pace
 from debrisest.runner.plan import Selection, Step, plan
 from debrisest.runner.progress import Progress, progress
 from debrisest.runner.read_back import not_read_back
+from debrisest.runner.taken_over import take_over
 from debrisest.scenario.load import LoadedScenario
 
 
@@ -47,7 +48,7 @@ def bring_up_to_date(
             remove_leftovers(out / scenario.name)
         steps = [step for one in scenarios for step in plan(one, out, selection, STAGES)]
         known = [chunk for one in scenarios for chunk in find_results(out / one.name).chunks]
-        errors = _run_due(steps, machine, known)
+        errors = _run_due([*take_over(steps)], machine, known)
     for scenario in scenarios:
         results = find_results(out / scenario.name)
         written = {step.address: step.runs for step in steps if step.name not in errors}
@@ -58,7 +59,7 @@ def bring_up_to_date(
 
 def _run_due(steps: list[Step], machine: Machine, known: Sequence[Chunk]) -> dict[str, str]:
     """Run what is due, if anything is; return the steps that wrote no file, with reasons."""
-    due = [step for step in steps if step.reason]
+    due = [step for step in steps if step.is_due]
     pace = Pace(due, known)
     with raised() as check, progress(len(due), machine.quiet, pace.left) as told:
         for step in due:

@@ -5,10 +5,27 @@ from collections.abc import Sequence
 from typing import Any
 from zlib import crc32
 
+from pydantic import TypeAdapter, ValidationError
+
+from debrisest.errors import UserError
 from debrisest.scenario.document import parse
-from debrisest.scenario.names import MOST_LETTERS, UNNAMED
+from debrisest.scenario.names import MOST_LETTERS, UNNAMED, CaseName
 
 _OF_HASH = 8
+
+
+def variant_called(name: str | None, settings: Sequence[str]) -> str:
+    """Return the name of a variant: as it is called, or else after its settings.
+
+    Raises UserError for a name that no folder should have.
+    """
+    if name is None:
+        return variant_of(settings)
+    try:
+        TypeAdapter(CaseName).validate_python(name)
+    except ValidationError as error:
+        raise UserError(f"--variant {name}: {error.errors()[0]['ctx']['error']}") from None
+    return name
 
 
 def variant_of(settings: Sequence[str]) -> str:

@@ -23,6 +23,7 @@ from debrisest.show.plots.gather import (
     single_runs,
 )
 from debrisest.show.plots.kinds import FIGURES, Kind
+from debrisest.show.plots.style import collected_after
 from debrisest.show.plots.tumble import tumbles, write_tumble
 
 
@@ -48,10 +49,11 @@ def draw_all(
     folder = out / scenario.name / "plots"
     drawn = False
     for name, source in sources(scenario, out, wanted, asked):
-        figure = draw(name, source)
-        for path in write(figure, folder, "-".join((name, *source.names)), asked.formats):
-            drawn = True
-            yield path
+        called = "-".join((name, *source.names))
+        drawn = True
+        with collected_after():
+            paths = list(write(draw(name, source), folder, called, asked.formats))
+        yield from paths
     if FILM in asked.figures:
         for source in tumbles(scenario, up_to_date(find_results(out / scenario.name), wanted)):
             drawn = True

@@ -39,7 +39,6 @@ def estimators_over_time(data: Data, context: str) -> Figure:
             if error is not None:
                 _lines(axis, times, error * table_scale(quantity), looks[estimator])
     time_axis(axes, times)
-    figure.align_ylabels(axes)
     heading(axes[0], "Errors of all estimators: RMS over runs, band of four in five", context)
     handles = [Line2D([], [], label=name, **look) for name, look in looks.items()]
     figure.legend(handles=handles, loc="outside lower center", ncols=min(_COLUMNS, len(handles)))

@@ -5,13 +5,11 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.transforms import offset_copy
 
 from debrisest.files import replacing
+from debrisest.show.plots.room import make_room
 from debrisest.show.plots.style import style
 
 FORMATS: dict[str, dict[str, Any]] = {
@@ -24,7 +22,6 @@ USUAL = ("png", "svg")
 MOST_MARKERS, MOST_VERTICES = 300, 2000
 """What has more of them is drawn as an image, which keeps an SVG below about 1 MB."""
 
-_LAID_OUT: dict[Any, Any] = {"figure.constrained_layout.use": False}
 _NO_MARKER = (None, "None", "none", " ", "")
 
 
@@ -33,7 +30,8 @@ def write(
 ) -> Iterator[Path]:
     """Write a figure in some FORMATS, each in one step; yield the paths."""
     _rasterise_dense(figure)
-    lay_out(figure)
+    with style():
+        make_room(figure)
     for form in formats:
         path = folder / f"{name}.{form}"
         with replacing(path) as temporary:
@@ -41,42 +39,9 @@ def write(
         yield path
 
 
-def lay_out(figure: Figure) -> None:
-    """Lay a figure out, once and for all: matplotlib would draw it twice for every file."""
-    engine = figure.get_layout_engine()
-    if engine is not None:
-        with style():
-            _fix_labels(figure)
-            engine.execute(figure)
-        with mpl.rc_context(_LAID_OUT):
-            figure.set_layout_engine(None)
-
-
-def _fix_labels(figure: Figure) -> None:
-    """Leave the labels of axes as far from them as their ticks, or aligned ones, ask for.
-
-    Matplotlib would search all ticks for it whenever it lays out or draws, those of aligned axes
-    for each of them, and for labels without a text as well.
-    """
-    for axes in figure.axes:
-        if axes.name == "rectilinear":
-            down, left = _pixels_away(axes.xaxis, 1), _pixels_away(axes.yaxis, 0)
-            below = offset_copy(axes.transAxes, figure, 0.0, down / figure.dpi)
-            beside = offset_copy(axes.transAxes, figure, left / figure.dpi, 0.0)
-            axes.xaxis.set_label_coords(0.5, 0.0, below)
-            axes.yaxis.set_label_coords(0.0, 0.5, beside)
-
-
-def _pixels_away(axis: Axis, along: int) -> float:
-    """Return how far a label lies from where its axes begin."""
-    if not axis.get_label_text() or axis.get_tightbbox() is None:
-        return 0.0
-    return float(axis.label.get_position()[along] - axis.axes.bbox.p0[along])
-
-
 def save(figure: Figure, target: Path | BytesIO, form: str, **options: Any) -> None:
-    """Write a figure that is laid out."""
-    with style(), mpl.rc_context(_LAID_OUT):
+    """Write a figure that has room for all it shows."""
+    with style():
         figure.savefig(target, format=form, **options)
 
 

@@ -2,6 +2,7 @@
 
 from typing import Any, Literal
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -25,5 +26,11 @@ def panel_grid(
     grid = figure.add_gridspec(rows + 1, columns, height_ratios=ratios)
     top = figure.add_subplot(grid[0, :])
     top.set_axis_off()
-    panels = grid[1:, :].subgridspec(rows, columns).subplots(squeeze=False, sharey=sharey)
+    panels: NDArray[Any] = np.empty((rows, columns), dtype=object)
+    for row, column in np.ndindex(rows, columns):
+        first = {"row": panels[row, 0], True: panels[0, 0]}.get(sharey)
+        panel = figure.add_subplot(grid[row + 1, column], sharey=first)
+        if first is not None and column:
+            panel.tick_params(labelleft=False)
+        panels[row, column] = panel
     return top, panels

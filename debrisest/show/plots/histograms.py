@@ -86,7 +86,8 @@ def _quantity(
     if not len(known):
         axis.set_ylim(0, 1)
         return
-    axis.hist(known, bins=_BINS, range=(0.0, limit), color=BLUE, alpha=0.8, linewidth=0)
+    counts, edges = np.histogram(known, bins=_BINS, range=(0.0, limit))
+    axis.stairs(counts, edges, fill=True, color=BLUE, alpha=0.8, linewidth=0)
     axis.axvline(float(np.median(known)), color=VERMILION, linewidth=1.4)
     beyond = int(np.sum(known > limit))
     if beyond:

@@ -55,6 +55,8 @@ class Kind(NamedTuple):
     """Of cells of the tables, of cases that are alike but for one number."""
     beside: Callable[[Data, str, Beside], Figure] | None = None
     """How it is drawn with what the tables have beside its errors, if it shows that."""
+    shaded: bool = False
+    """Whether it has other colours than those of the style, and more of them."""
 
     @property
     def of_one_run(self) -> bool:
@@ -67,9 +69,9 @@ FIGURES: dict[str, Kind] = {
     "recovered_quaternion": Kind(
         recovered_quaternion.recovered_quaternion, ("raw_q_if", "q_if", "piece", "sign")
     ),
-    "cloud": Kind(body.cloud, body.CLOUD),
-    "mesh": Kind(body.mesh, body.MESH),
-    "coverage_map": Kind(body.coverage, body.MESH),
+    "cloud": Kind(body.cloud, body.CLOUD, shaded=True),
+    "mesh": Kind(body.mesh, body.MESH, shaded=True),
+    "coverage_map": Kind(body.coverage, body.MESH, shaded=True),
     "first_hypotheses": Kind(sign_hypotheses.first_hypotheses, sign_hypotheses.DATASETS),
     "hypothesis_scores": Kind(sign_hypotheses.hypothesis_scores, sign_hypotheses.DATASETS),
     "next_hypotheses": Kind(sign_hypotheses.next_hypotheses, sign_hypotheses.DATASETS),

@@ -42,7 +42,6 @@ def motion(data: Data, context: str) -> Figure:
         shade(axis, breaks)
     _mark(axes[0], data["time_s"], np.asarray(data.get("rejected", np.nan) > 0))
     time_axis(axes, data["time_s"])
-    figure.align_ylabels(axes)
     smoothed = data.get("accepted", np.asarray(1.0)) < 1.0
     heading(axes[0], _NOT_ACCEPTED if smoothed else _TITLE, context)
     legend_below(figure, _handles())

@@ -87,7 +87,6 @@ def pose_errors(data: Data, context: str) -> Figure:
         _group(list(row), group, data)
     for column in grid.T:
         time_axis([axis for axis in column if axis.get_visible()], times)
-    figure.align_ylabels(grid[:, 0])
     heading(top, "Errors with 3-sigma bands", context)
     legend_below(figure, _handles(any(group.sigma(data) is not None for group in groups)))
     return figure

@@ -28,7 +28,6 @@ def rates(data: Data, context: str) -> Figure:
         for index, axis in enumerate(axes[1:]):
             _error(axis, index, times, (estimate - truth)[:, index], 3 * sigma[:, index])
     time_axis(axes, times)
-    figure.align_ylabels(axes)
     heading(axes[0], "Angular rate in principal axes", context)
     legend_below(figure, _handles(truth is not None))
     return figure

@@ -15,8 +15,9 @@ from debrisest.files import put
 from debrisest.results.results import Results
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.axes import heading
-from debrisest.show.plots.files import lay_out, save
+from debrisest.show.plots.files import save
 from debrisest.show.plots.gather import Source, single_runs
+from debrisest.show.plots.room import make_room
 from debrisest.show.plots.space import same_scale, spatial_axes
 from debrisest.show.plots.style import BLUE, GREY, VERMILION, style
 
@@ -68,12 +69,12 @@ def _frames(data: Data, context: str) -> Iterator[Any]:
     heading(top, "Tumble, inertial axes: true (o), estimated (x)", context)
     lines = [axes.plot([], [], [], **look)[0] for look in (_RAYS, _TRUE, _ESTIMATED)]
     time = axes.text2D(0.02, 0.95, "", transform=axes.transAxes)
+    make_room(figure)
     for epoch in np.linspace(0, len(times) - 1, min(FRAMES, len(times))).astype(int):
         spokes = np.insert(true[epoch], range(len(true[epoch])), 0.0, axis=0)
         for line, points in zip(lines, (spokes, true[epoch], estimated[epoch])):
             line.set_data_3d(*points.T)
         time.set_text(f"{times[epoch]:g} s")
         drawn = BytesIO()
-        lay_out(figure)
         save(figure, drawn, "png", dpi=_DPI)
         yield Image.open(drawn).convert("RGB").quantize(_COLOURS)

@@ -1,7 +1,7 @@
 """What the report tells of one scenario: words, tables, overviews, figures, provenance."""
 
 from collections import Counter
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,6 +34,7 @@ class Chapter(NamedTuple):
     """What the report tells of one scenario."""
 
     name: str
+    command: str
     title: str
     source: str
     counts: dict[str, int]
@@ -51,16 +52,21 @@ class Chapter(NamedTuple):
 
 def chapter(
     scenario: LoadedScenario,
+    command: str,
     results: Results,
     wanted: Sequence[Wanted],
     cells: pd.DataFrame,
     settings: Sequence[str],
-    figures: Iterator[Picture],
+    figures: Iterable[Picture],
 ) -> Chapter:
-    """Return a chapter of the cells of a scenario and of the files that a plan wants."""
+    """Return a chapter of the cells of a scenario and of the files that a plan wants.
+
+    ``command`` are the arguments that name its results on the command line.
+    """
     common = scenario.common
     return Chapter(
         name=scenario.name,
+        command=command,
         title=common.title,
         source=common.source,
         counts=dict(Counter(cells["verdict"])),
