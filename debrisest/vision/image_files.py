@@ -65,6 +65,17 @@ def read_images(
     raise UserError(f"{path}: neither a folder of images nor a video file ({allowed})")
 
 
+def count_images(path: Path) -> int:
+    """Return how many images of a camera a folder or a video says that it has; 0 if it is none."""
+    if path.is_dir():
+        left = path / PAIR[0]
+        return len(_names(left if left.is_dir() else path))
+    if path.suffix.lower() not in VIDEOS or not path.is_file():
+        return 0
+    cv2 = vision_library("cv2")
+    return max(0, int(cv2.VideoCapture(str(path)).get(cv2.CAP_PROP_FRAME_COUNT)))
+
+
 def write_images(folder: Path, images: ImageSequence) -> None:
     """Write a folder that `read_images` reads, PNG without loss."""
     cv2 = vision_library("cv2")
