@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from debrisest.scenario.load import LoadedScenario
 
 _CALIBRATION = "calibration.yaml"
+_PLACES = "*_par.txt"
+_MOST = 75
+"""Images that are taken where nothing else is said: more cost hours and tell little more."""
 
 
 def reconstruct(
@@ -27,7 +30,8 @@ def reconstruct(
         Path | None, Option("--mesh", help="A closed mesh: OBJ, STL or PLY, in metres.")
     ] = None,
     camera: Annotated[
-        Path | None, Option("--camera", help=f"Calibration (default: {_CALIBRATION} there).")
+        Path | None,
+        Option("--camera", help=f"Calibration (default: {_CALIBRATION}, or {_PLACES}, there)."),
     ] = None,
     density_kg_m3: Annotated[float, Option("--density-kg-m3", help="Constant density.")] = 1000.0,
     mass_kg: Annotated[
@@ -45,7 +49,10 @@ def reconstruct(
         Option("--field-of-view-deg", help="Across the longer side, where nothing is calibrated."),
     ] = None,
     widest_px: WidestPx = 1280,
-    every: Annotated[int, Option("--every", min=1, help="Take one image of so many.")] = 1,
+    every: Annotated[
+        int | None,
+        Option("--every", min=1, help=f"Take one image of so many (default: {_MOST} at most)."),
+    ] = None,
     reference: Annotated[
         Path | None, Option("--reference", help="A CAD mesh to lay the body onto, and to compare.")
     ] = None,
@@ -78,7 +85,11 @@ def reconstruct(
             "known_length_sigma_m": known_length_sigma_m,
         }
     folder = out or RESULTS / given.resolve().stem
-    keys = {"every": every, "field_of_view_deg": field_of_view_deg, "widest_px": widest_px}
+    keys = {
+        "every": every or _thinned(given),
+        "field_of_view_deg": field_of_view_deg,
+        "widest_px": widest_px,
+    }
     text = _scenario(given, camera, keys, problem, folder)
     config = write_new(folder / f"{folder.name}.yaml", text, force)
     (scenario,) = load_all([config], None, None)
@@ -88,6 +99,17 @@ def reconstruct(
     for path in [config, *_files(scenario, folder, data)]:
         print(f"wrote {path}")
     exit_if(bool(data.get("failure")))
+
+
+def _thinned(images: Path) -> int:
+    """Return of how many images one is to be taken, and say it where it is not each."""
+    from debrisest.vision.image_files import count_images
+
+    count = count_images(images)
+    every = -(-count // _MOST)
+    if every > 1:
+        print(f"note: one of {every} of the {count} images is taken; --every 1 takes them all")
+    return max(every, 1)
 
 
 def _require_positive(**values: float | None) -> None:
@@ -137,10 +159,11 @@ def _scenario(
 
     from debrisest.errors import UserError
 
-    there = [place / _CALIBRATION for place in (images, images.parent)]
-    calibration = camera or next((path for path in there if path.is_file()), None)
     if not images.exists():
         raise UserError(f"{images}: no such folder or file")
+    there = [place / _CALIBRATION for place in (images, images.parent)]
+    there += sorted(images.glob(_PLACES))
+    calibration = camera or next((path for path in there if path.is_file()), None)
     measured = {"kind": "image_files", "folder": relative_to(folder, str(images))}
     measured |= {key: value for key, value in keys.items() if value is not None}
     if calibration is not None:

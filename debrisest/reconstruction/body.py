@@ -5,6 +5,7 @@ keeps thin panels. The screened Poisson surface of the dense cloud can be chosen
 as near to compact bodies and lost panels.
 """
 
+from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -21,7 +22,7 @@ from debrisest.reconstruction.outlines import main_part, outlines
 from debrisest.reconstruction.poisson import poisson_mesh
 from debrisest.reconstruction.silhouettes import Frames
 from debrisest.reconstruction.structure import Rig, Structure
-from debrisest.reconstruction.turntable import Table, table_under
+from debrisest.reconstruction.turntable import Table, support_of, table_under
 from debrisest.reconstruction.winding import pieces_of
 from debrisest.vision.polyhedron import MassProperties, mass_properties
 
@@ -62,11 +63,13 @@ class Body(NamedTuple):
     """Whether the outlines of the cloud took the place of silhouettes."""
     on_table: bool
     """Whether it was closed below by the table on which it turned."""
+    support_cut: bool
+    """Whether this table was seen in the cloud, and cut off."""
 
 
 def reconstructed_body(
     frames: Frames,
-    masks: BoolArray,
+    readings: Sequence[BoolArray],
     rig: Rig,
     structure: Structure,
     method: Method = "fusion",
@@ -75,28 +78,21 @@ def reconstructed_body(
 ) -> Body:
     """Return the body in images (time, camera, row, column) without distortion.
 
+    ``readings`` are silhouettes; of several, those count that overlap most with the cloud.
     ``known_length`` is the longest distance between two points of the body, and its 1-sigma: it
     replaces the scale of the structure. Raises ValueError where no closed surface comes out.
     """
-    outer = _Outer(masks[:, 0], rig.matrix[0], structure)
-    held, by_cloud = outer.holds(structure.points), False
-    if held.mean() < _AGREED:
-        if outline == "silhouettes":
-            raise ValueError(
-                f"the structure does not agree with the silhouettes, which hold {held.mean():.0%} "
-                "of its points: images were placed wrongly; take more of them, or larger ones"
-            )
-        by_cloud, held = True, main_part(structure)
-        drawn = outlines(structure.of(held), rig.matrix[0], masks.shape[2:])
-        masks = np.repeat(drawn[:, None], masks.shape[1], axis=1)
-        outer = outer._replace(masks=drawn)
+    support = support_of(structure) if outline == "either" else None
+    if support is not None:
+        structure = structure.of(support.below(structure.points) < 0.0)
+    masks, held, by_cloud = _outlined(frames, readings, rig, structure, outline)
     structure = structure.of(held)
-    outer = outer._replace(structure=structure)
+    outer = _Outer(masks[:, 0], rig.matrix[0], structure, support)
     views = depth_views(frames, masks, rig, structure)
     extent = float(np.ptp(structure.points, axis=0).max())
     cells = [extent / count for count in _CELLS]
     cloud = _cloud(views, outer, cells[0])
-    if outline == "either":
+    if outline == "either" and support is None:
         outer = outer._replace(table=table_under(cloud.points, structure))
     coarse, mesh = _SURFACES[method](views, outer, cells)
     coverage = triangles_seen(mesh, cloud, _NEAR * extent)
@@ -116,7 +112,42 @@ def reconstructed_body(
         silhouette_volume=factor**3 * outer.volume(extent / _HULL_CELLS),
         by_cloud=by_cloud,
         on_table=outer.table is not None,
+        support_cut=support is not None,
     )
+
+
+def _outlined(
+    frames: Frames,
+    readings: Sequence[BoolArray],
+    rig: Rig,
+    structure: Structure,
+    outline: Outline,
+) -> tuple[BoolArray, BoolArray, bool]:
+    """Return silhouettes, which points (point,) they hold, and whether the cloud gave them."""
+    held = [
+        _Outer(each[:, 0], rig.matrix[0], structure).holds(structure.points) for each in readings
+    ]
+    if outline == "silhouettes":
+        if held[0].mean() < _AGREED:
+            raise ValueError(
+                "the structure does not agree with the silhouettes, which hold "
+                f"{held[0].mean():.0%} of its points: images were placed wrongly; take more of "
+                "them, or larger ones"
+            )
+        return readings[0], held[0], False
+    part = main_part(structure)
+    drawn = outlines(structure.of(part), rig.matrix[0], frames.shape[2:])
+    agree = [place for place, each in enumerate(held) if each.mean() >= _AGREED]
+    if not agree:
+        return np.repeat(drawn[:, None], frames.shape[1], axis=1), part, True
+    best = max(agree, key=lambda place: _overlap(readings[place][:, 0], drawn))
+    return readings[best], held[best], False
+
+
+def _overlap(masks: BoolArray, drawn: BoolArray) -> float:
+    """Return the share of what either of two outlines holds that both do, where one is drawn."""
+    there = drawn.any(axis=(1, 2))
+    return float((masks & drawn)[there].sum() / (masks | drawn)[there].sum())
 
 
 class _Outer(NamedTuple):
@@ -150,6 +181,8 @@ def _cloud(views: list[DepthView], outer: _Outer, cell: float) -> OrientedCloud:
     """Return the dense cloud, as far as it lies in the silhouettes."""
     found = dense_cloud(views, cell)
     kept = outer.holds(found.points)
+    if outer.table is not None:
+        kept &= outer.table.below(found.points) < -cell
     return OrientedCloud(found.points[kept], found.normals[kept])
 
 

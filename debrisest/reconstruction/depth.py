@@ -96,7 +96,7 @@ def _pairs(rig: Rig, structure: Structure) -> Iterator[tuple[int, tuple[_At, _At
         good = (angle > _NARROWEST) & (angle < _WIDEST)
         if good[place + 1 : place + 2].any():
             other = place + 1
-        elif structure.lens is not None and good.any():
+        elif good.any() and (structure.lens is not None or place + 1 < len(frames)):
             other = int(np.where(good, np.abs(angle - _USUAL), np.inf).argmin())
         else:
             continue

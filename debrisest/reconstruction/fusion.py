@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.counted import counted
 from debrisest.reconstruction.depth import DepthView
-from debrisest.reconstruction.normals import facing_surface
+from debrisest.reconstruction.normals import FacingSurface, facing_surface
 from debrisest.reconstruction.structure import Structure
 from debrisest.vision.libraries import vision_library
 
 _TRUNCATED = 2.0
 """Voxels: distances count no further than this."""
-_SIDES = np.concatenate([np.eye(3), -np.eye(3)])
+_AT_ONCE = 1 << 18
+"""Points that are looked up in a depth image together, so that they stay in the cache."""
 _LEAST_COSINE = 0.25
 """Of the normal to the line of sight."""
 _LEAST_WEIGHT = 1.0
@@ -137,30 +138,36 @@ def distance_to_surfaces(points: Values, views: Sequence[DepthView], reach: floa
     surface of any side is outside. An average over all sides would fill, or lose, what is thinner
     than ``reach``: there each side of a panel counts as the depth of the other one.
     """
-    total, weight = np.zeros((2, len(_SIDES), len(points)), dtype=np.float32)
+    total, weight = np.zeros((2, 2 * 3, len(points)), dtype=np.float32)
     for found in counted(views, "depth images fused"):
-        ahead, sides = _before(points, found, reach)
-        total += sides * ahead
-        weight += sides
-    mean = total / np.maximum(weight, np.float32(1e-6))
-    return np.asarray(np.where(weight > _LEAST_WEIGHT, mean, np.float32(-1.0)).max(axis=0))
+        surface = facing_surface(found)
+        for begin in range(0, len(points), _AT_ONCE):
+            some = slice(begin, begin + _AT_ONCE)
+            which, ahead, sides = _before(points[some], found, surface, reach)
+            total[:, begin + which] += sides * ahead
+            weight[:, begin + which] += sides
+    mean = np.divide(total, np.maximum(weight, np.float32(1e-6)), out=total)
+    mean[weight <= _LEAST_WEIGHT] = -1.0
+    return np.asarray(mean.max(axis=0))
 
 
-def _before(points: Values, found: DepthView, reach: float) -> tuple[Values, Values]:
+def _before(
+    points: Values, found: DepthView, surface: FacingSurface, reach: float
+) -> tuple[IntArray, Values, Values]:
     """Return how far points lie before what a depth image shows, and as the surface of which side.
 
-    (n,) within one ``reach``, and weights (side, n): zero where a point lies further behind.
+    Which points (n,) these are, the distance (n,), at most one ``reach``, and weights (side, n).
+    Points further behind are left out.
     """
-    surface = facing_surface(found)
     seen = found.view.seen(points.astype(np.float64)).astype(np.float32)
-    pixel, inside = _pixels(seen, found.view.matrix, found.depth.shape)
-    cosine = surface.cosine[pixel]
-    ahead = (surface.points[pixel][:, 2] - seen[:, 2]) * cosine / reach
-    counts = inside & (cosine > _LEAST_COSINE) & (ahead > -1.0)
-    facing = surface.normals[pixel] @ _SIDES.T
-    sides = np.where(facing > 0.5, facing**2, 0.0).T * cosine
-    weights = np.where(counts, sides, 0.0).astype(np.float32)
-    return np.where(counts, np.minimum(ahead, 1.0), 0.0).astype(np.float32), weights
+    (row, column), inside = _pixels(seen, found.view.matrix, found.depth.shape)
+    cosine = surface.cosine[row, column]
+    ahead = (surface.points[row, column, 2] - seen[:, 2]) * cosine / reach
+    which = np.flatnonzero(inside & (cosine > _LEAST_COSINE) & (ahead > -1.0))
+    normals = surface.normals[row[which], column[which]].T
+    facing = np.concatenate([normals, -normals])
+    sides = np.where(facing > 0.5, facing**2, 0.0) * cosine[which]
+    return which, np.minimum(ahead[which], 1.0).astype(np.float32), sides.astype(np.float32)
 
 
 def fused_mesh(grid: Grid, outside: Values, views: Sequence[DepthView]) -> tuple[Array, IntArray]:

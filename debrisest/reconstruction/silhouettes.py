@@ -1,9 +1,6 @@
-"""Silhouettes of a turning body: before black sky by brightness, before a room by motion.
+"""Silhouettes of a turning body: before black sky by brightness, else by what is behind it."""
 
-On a turntable some pixels show the body in most images, so that motion takes it for background:
-where the edges of the images show a plain backdrop, its levels count there.
-"""
-
+from collections.abc import Iterable, Iterator
 from functools import partial
 
 import numpy as np
@@ -11,51 +8,79 @@ import scipy
 from numpy.typing import NDArray
 
 from debrisest.arrays import Array, BoolArray
+from debrisest.reconstruction import backdrop
+from debrisest.reconstruction.backdrop import BORDER_PX, Smooth
 
 _BLUR_PX = 1.0
 _SIGMAS = 5.0
 _LEAST_GREY = 1.5
 _DARK_GREY = 12.0
 """Skies are darker than this in most of the border's pixels."""
-_BACKGROUND_SHARE = 0.25
-"""Of the frames in which a pixel has to show the same, for that to be the background."""
-_EDGE_SHARE, _PLAIN_SHARE, _PLAIN_GREY = 0.1, 0.95, 5.0
-"""A backdrop is plain whose levels are smooth to this many in this share of the images' edges."""
-_BORDER_PX = 4
 _EDGE_PX = 3
 _BRIGHT_GREY = 60.0
 """Contrasts beyond this, as of a pixel that is always the body's, count as this."""
+_BLOCKS_PX = 17
+"""As far as compression in blocks of 8 pixels reaches."""
+_NO_COLOUR = 128
+"""Cr and Cb of what is grey."""
 
 Frames = NDArray[np.uint8]
 
 
-def silhouettes(frames: Frames) -> BoolArray:
+def silhouettes(frames: Frames, chroma: Frames | None = None) -> BoolArray:
     """Return where the body is in images (time, camera, row, column) of cameras that stand still.
 
-    Raises ValueError where nothing tells the body from what is behind it.
+    ``chroma (time, camera, row, column, 2)`` are Cr and Cb of images that have colours. Raises
+    ValueError where nothing tells the body from what is behind it.
     """
-    shown = [_of_camera(frames[:, camera]) for camera in range(frames.shape[1])]
-    return np.stack(shown, axis=1)
+    return readings(frames, chroma)[0]
 
 
-def _of_camera(frames: Frames) -> BoolArray:
-    blur = partial(scipy.ndimage.gaussian_filter, sigma=_BLUR_PX, output=np.float32)
-    smooth = np.stack([blur(frame) for frame in frames])
+def readings(frames: Frames, chroma: Frames | None = None) -> list[BoolArray]:
+    """Return silhouettes as they can be read: before a plain backdrop, and by motion.
+
+    Raises ValueError where there is none.
+    """
+    colours = [None] * frames.shape[1] if chroma is None else list(chroma.swapaxes(0, 1))
+    each = [list(_of_camera(*one)) for one in zip(frames.swapaxes(0, 1), colours)]
+    found = [np.stack(masks, axis=1) for masks in zip(*each)]
+    told = [masks for masks in found if masks.any(axis=(0, 2, 3)).all()]
+    if not told:
+        raise ValueError("no body stands out from what is behind it, neither bright nor moving")
+    return told
+
+
+def _of_camera(frames: Frames, chroma: Frames | None) -> Iterator[BoolArray]:
+    smooth = _blurred(frames)
     border = _border(smooth)
     if np.median(border) < _DARK_GREY:
-        contrast, level = smooth - float(np.median(border)), _threshold(border)
-    else:
-        background, sigma = _background(smooth)
-        background = _corrected(background, _backdrop(smooth))
-        contrast, level = np.abs(smooth - background), max(_SIGMAS * sigma, _LEAST_GREY)
-    masks = np.stack([_sharp(_largest(each > level), each) for each in contrast])
-    if not masks.any():
-        raise ValueError("no body stands out from what is behind it, neither bright nor moving")
-    return masks
+        yield _masks(smooth - float(np.median(border)), _threshold(border))
+        return
+    colours = [] if chroma is None else [chroma[..., 0], chroma[..., 1]]
+    channels = [smooth, *(_blurred(each) - np.float32(_NO_COLOUR) for each in colours)]
+    for behind in backdrop.readings(channels):
+        yield _masks(behind.contrasts(channels), behind.contrast, behind.beside)
 
 
-def _border(smooth: NDArray[np.float32]) -> Array:
-    n = _BORDER_PX
+def _masks(contrasts: Iterable[Array], level: float, beside: float = 0.0) -> BoolArray:
+    """Return where contrasts are above a level, and above a share of those nearby, sharply."""
+    return np.stack([_sharp(_largest(_above(each, level, beside)), each) for each in contrasts])
+
+
+def _above(contrast: Array, level: float, beside: float) -> BoolArray:
+    if not beside:
+        return np.asarray(contrast > level)
+    nearby = scipy.ndimage.maximum_filter(contrast, size=_BLOCKS_PX)
+    return np.asarray(contrast > np.maximum(level, beside * np.minimum(nearby, _BRIGHT_GREY)))
+
+
+def _blurred(frames: Frames) -> Smooth:
+    blur = partial(scipy.ndimage.gaussian_filter, sigma=_BLUR_PX, output=np.float32)
+    return np.stack([blur(frame) for frame in frames])
+
+
+def _border(smooth: Smooth) -> Array:
+    n = BORDER_PX
     edges = (smooth[:, :n], smooth[:, -n:], smooth[:, :, :n], smooth[:, :, -n:])
     return np.concatenate([edge.ravel() for edge in edges]).astype(np.float64)
 
@@ -63,46 +88,6 @@ def _border(smooth: NDArray[np.float32]) -> Array:
 def _threshold(values: Array) -> float:
     spread = 1.4826 * float(np.median(np.abs(values - np.median(values))))
     return max(_SIGMAS * spread, _LEAST_GREY)
-
-
-def _background(smooth: NDArray[np.float32]) -> tuple[Array, float]:
-    """Return what each pixel shows most steadily (row, column), NaN-free, and its noise.
-
-    Where even the steadiest values are spread, the body is there in every frame.
-    """
-    count = max(3, round(_BACKGROUND_SHARE * len(smooth)))
-    ordered = np.sort(smooth, axis=0)
-    width = ordered[count - 1 :] - ordered[: len(ordered) - count + 1]
-    best = width.argmin(axis=0)
-    level = np.take_along_axis(ordered, best[None] + count // 2, axis=0)[0]
-    narrow = width.min(axis=0)
-    usual = float(np.median(narrow[_BORDER_PX:-_BORDER_PX, _BORDER_PX:-_BORDER_PX]))
-    sigma = float(np.median(np.abs(smooth - level)[:, :_BORDER_PX])) * 1.4826
-    always_body = narrow > 4.0 * max(usual, sigma)
-    return np.where(always_body, -1e3, level).astype(np.float64), sigma
-
-
-def _backdrop(smooth: NDArray[np.float32]) -> Array | None:
-    """Return the levels (row, column) of a plain backdrop, None where what is behind has details.
-
-    A quadratic of row and column through what the edges of the images show.
-    """
-    usual = np.median(smooth, axis=0).astype(np.float64)
-    rows, columns = usual.shape
-    v, u = np.meshgrid(np.linspace(-1, 1, rows), np.linspace(-1, 1, columns), indexing="ij")
-    terms = np.stack([np.ones_like(u), u, v, u * u, u * v, v * v], axis=-1)
-    edge = np.maximum(np.abs(u), np.abs(v)) > 1.0 - _EDGE_SHARE
-    fitted = np.linalg.lstsq(terms[edge], usual[edge], rcond=None)[0]
-    off = np.abs(terms[edge] @ fitted - usual[edge])
-    return terms @ fitted if np.quantile(off, _PLAIN_SHARE) < _PLAIN_GREY else None
-
-
-def _corrected(background: Array, backdrop: Array | None) -> Array:
-    """Return the background, with the backdrop's levels where it shows the body all the time."""
-    if backdrop is None:
-        return background
-    own = np.abs(background - backdrop) < 2.0 * _PLAIN_GREY
-    return np.where(own, background, backdrop)
 
 
 def _sharp(mask: BoolArray, contrast: Array) -> BoolArray:

@@ -43,6 +43,8 @@ class Lens(NamedTuple):
     """OpenCV's k1, k2, p1, p2, k3 (5,)."""
     focal_spread: float = 0.0
     """1-sigma of the focal length, of it; zero where it was given."""
+    distortion_sigma: float = 0.0
+    """1-sigma of k1; zero where it was given, or is taken to be zero."""
 
 
 class How(NamedTuple):
@@ -100,7 +102,8 @@ def structure_from_motion(
     with np.load(result) as found:
         if "failure" in found:
             raise ValueError(str(found["failure"]))
-        lens = Lens(found["matrix"], found["distortion"], float(found["focal_spread"]))
+        sigma = float(found["focal_spread"]), float(found["distortion_sigma"])
+        lens = Lens(found["matrix"], found["distortion"], *sigma)
         return Structure(
             rotation=found["rotation"],
             translation=found["translation"],

@@ -17,6 +17,9 @@ _ONE_AXIS, _TURNED = np.sin(np.radians(2.0)), np.sin(np.radians(20.0))
 _LOOKS_DOWN = np.sin(np.radians(4.0))
 _LOWEST = 0.005
 """Share of the points that lie below the base, by their errors."""
+_FITS = 3
+_LAYER, _SUPPORT, _BELOW = 0.05, 0.15, 0.05
+"""A support's points: how thick they lie, of the height of all; least share; most share below."""
 
 
 class Table(NamedTuple):
@@ -37,6 +40,50 @@ def table_under(points: Array, structure: Structure) -> Table | None:
 
     None where the body turned about more than one axis, or little, or was not looked down upon.
     """
+    up = _upwards(points, structure)
+    return None if up is None else Table(up, float(np.quantile(points @ up, _LOWEST)))
+
+
+def support_of(structure: Structure) -> Table | None:
+    """Return the table that turns with the body and has points of its own, as a patterned one has.
+
+    They lie in a layer across the axis, below nearly all others, and reach as far from the axis as
+    those. The table is the plane through them, less three sigma of what they leave. None where
+    there is no such layer.
+    """
+    points = structure.points
+    up = _upwards(points, structure)
+    if up is None:
+        return None
+    height = points @ up
+    width = _LAYER * float(np.subtract(*np.quantile(height, [0.99, 0.01])))
+    ordered = np.sort(height)
+    inside = np.searchsorted(ordered, ordered + width) - np.arange(len(ordered))
+    first = int(inside.argmax())
+    layer = (height >= ordered[first]) & (height <= ordered[first] + width)
+    across = points - height[:, None] * up
+    away = np.linalg.norm(across - np.median(across[~layer], axis=0), axis=1)
+    wide = np.quantile(away[layer], 0.9) > np.quantile(away[~layer], 0.9)
+    if layer.mean() < _SUPPORT or first > _BELOW * len(points) or not wide:
+        return None
+    return _plane(points[layer], up)
+
+
+def _plane(points: Array, up: Array) -> Table:
+    """Return the plane through most of the points (point, 3), from its upper side."""
+    height = points @ up
+    for _ in range(_FITS):
+        off = height - np.median(height)
+        sigma = 1.4826 * float(np.median(np.abs(off)))
+        near = points[np.abs(off) < 3.0 * sigma]
+        normal = np.linalg.svd(near - near.mean(axis=0), full_matrices=False)[2][2]
+        normal *= np.sign(normal @ up)
+        height = points @ normal
+    return Table(normal, float(np.median(height)) + 3.0 * sigma)
+
+
+def _upwards(points: Array, structure: Structure) -> Array | None:
+    """Return the unit vector along the one axis of the turn, towards the camera's side."""
     placed = structure.registered
     turns, shifts = structure.rotation[placed], structure.translation[placed]
     off = turns - turns.mean(axis=0)
@@ -48,5 +95,4 @@ def table_under(points: Array, structure: Structure) -> Table | None:
     elevation = float(np.median(away @ axes[:, 0] / np.linalg.norm(away, axis=1)))
     if abs(elevation) < _LOOKS_DOWN:
         return None
-    up = axes[:, 0] * np.sign(elevation)
-    return Table(up, float(np.quantile(points @ up, _LOWEST)))
+    return np.asarray(axes[:, 0] * np.sign(elevation))

@@ -54,9 +54,18 @@ def _images(data: Data) -> dict[str, str]:
     elif spread > 0.0:
         found = told(focal, spread * focal, "px")
         lines["focal length"] = f"{found}, from the images, begun with {source}"
+        lines["distortion"] = _distortion(data)
     elif source:
         lines["focal length"] = f"{focal:.6g} px, from {source}"
     return lines
+
+
+def _distortion(data: Data) -> str:
+    bent = float(data["found_lens_distortion"][0, 0])
+    sigma = float(data["found_distortion_spread"])
+    if sigma > 0.0:
+        return f"k1 = {told(bent, sigma, '')}, from the images"
+    return "none, which the images do not tell apart; a lens that bends visibly needs a calibration"
 
 
 def _numbers(data: Data) -> dict[str, str]:

@@ -18,10 +18,11 @@ from debrisest.errors import UserError
 from debrisest.files import content, replacing, require_ending
 from debrisest.vision.libraries import vision_library
 
-SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm")
+SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm", ".ppm", ".pnm", ".webp")
 VIDEOS = (".mp4", ".avi", ".mov", ".mkv", ".m4v", ".webm")
 PAIR = ("left", "right")
 TIMES = "times.csv"
+_NO_COLOUR, _LEAST_COLOUR = 128, 1.5
 _CODECS = {".mp4": "mp4v", ".avi": "MJPG"}
 
 
@@ -36,27 +37,43 @@ class ImageSequence(NamedTuple):
     """Seconds (time,), where a file tells them."""
     reduced: float = 1.0
     """Their width over that in the files."""
-    first: Path | None = None
-    """The file of the first image."""
+    names: tuple[str, ...] = ()
+    """Of the files of the first camera, in a folder."""
+    chroma: NDArray[np.uint8] | None = None
+    """Cr and Cb (time, camera, row, column, 2), 128 without colour; none where all is grey."""
 
 
-def read_images(path: Path, widest: int | None = None, gaps: bool = False) -> ImageSequence:
+def read_images(
+    path: Path, widest: int | None = None, gaps: bool = False, colours: bool = False
+) -> ImageSequence:
     """Return the images of a folder, in the order of the numbers in their names, or of a video.
 
     Images with more columns than ``widest`` are reduced to that many. ``gaps``: whether numbers may
-    be missing among the frames.
+    be missing among the frames. ``colours``: whether the chroma of images in a folder is wanted.
 
     Raises `UserError`: nothing there, no images, unreadable or damaged ones, other sizes, missing
     frames, times that do not fit.
     """
     if path.is_dir():
-        return _folder(path, widest, gaps)
+        found = _folder(path, widest, gaps)
+        return found._replace(chroma=_chroma(path, found, widest)) if colours else found
     if not path.is_file():
         raise UserError(f"{path}: no such folder or file")
     if path.suffix.lower() in VIDEOS:
         return _video(path, widest)
     allowed = ", ".join(VIDEOS)
     raise UserError(f"{path}: neither a folder of images nor a video file ({allowed})")
+
+
+def count_images(path: Path) -> int:
+    """Return how many images of a camera a folder or a video says that it has; 0 if it is none."""
+    if path.is_dir():
+        left = path / PAIR[0]
+        return len(_names(left if left.is_dir() else path))
+    if path.suffix.lower() not in VIDEOS or not path.is_file():
+        return 0
+    cv2 = vision_library("cv2")
+    return max(0, int(cv2.VideoCapture(str(path)).get(cv2.CAP_PROP_FRAME_COUNT)))
 
 
 def write_images(folder: Path, images: ImageSequence) -> None:
@@ -110,7 +127,20 @@ def _folder(path: Path, widest: int | None, gaps: bool) -> ImageSequence:
     found = [[_alike(folder / name, shape, widest) for name in names[0]] for folder in folders]
     frames = np.stack([np.stack(own) for own in found], axis=1)
     times, reduced = _times(path / TIMES, names[0]), frames.shape[3] / shape[1]
-    return ImageSequence(str(path), cameras, frames, times, reduced, first)
+    return ImageSequence(str(path), cameras, frames, times, reduced, tuple(names[0]))
+
+
+def _chroma(path: Path, images: ImageSequence, widest: int | None) -> NDArray[np.uint8] | None:
+    """Return Cr and Cb of a folder's images; None where they have no colours."""
+    cv2 = vision_library("cv2")
+    folders = [path / name for name in images.cameras] if len(images.cameras) > 1 else [path]
+    found = np.empty((*images.frames.shape, 2), np.uint8)
+    for camera, folder in enumerate(folders):
+        for epoch, name in enumerate(_names(folder)):
+            bright = cv2.cvtColor(_image(folder / name, cv2.IMREAD_COLOR), cv2.COLOR_BGR2YCrCb)
+            found[epoch, camera] = _reduced(bright, widest)[..., 1:]
+    coloured = np.abs(found.astype(np.int16) - _NO_COLOUR).mean() > _LEAST_COLOUR
+    return found if coloured else None
 
 
 def _names(folder: Path) -> list[str]:
@@ -145,12 +175,13 @@ def _check_numbers(folder: Path, names: Sequence[str]) -> None:
             )
 
 
-def _image(path: Path) -> NDArray[np.uint8]:
+def _image(path: Path, flag: int = 0) -> NDArray[np.uint8]:
+    """Return an image, grey unless OpenCV's flag of reading says otherwise."""
     cv2 = vision_library("cv2")
     coded = content(path)
     whole = coded and not _cut_off(coded)
     pixels = np.frombuffer(coded, dtype=np.uint8)
-    image = cv2.imdecode(pixels, cv2.IMREAD_GRAYSCALE) if whole else None
+    image = cv2.imdecode(pixels, flag) if whole else None
     if image is None:
         raise UserError(f"{path}: not an image that can be read; it may be damaged")
     return np.asarray(image)
@@ -172,7 +203,7 @@ def _alike(path: Path, shape: tuple[int, ...], widest: int | None) -> NDArray[np
 
 
 def _reduced(image: NDArray[np.uint8], widest: int | None) -> NDArray[np.uint8]:
-    height, width = image.shape
+    height, width = image.shape[:2]
     if widest is None or width <= widest:
         return image
     cv2 = vision_library("cv2")

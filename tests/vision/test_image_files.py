@@ -39,7 +39,7 @@ def test_images_are_read_in_the_order_of_the_numbers_in_their_names(tmp_path: Pa
     (tmp_path / "._turn1.png").write_bytes(b"what some systems leave beside files")
     found = read_images(tmp_path, gaps=True)
     assert found.frames[:, 0, 0, 0].tolist() == [1, 2, 9, 10]
-    assert found.first == tmp_path / "turn1.png"
+    assert found.names[0] == "turn1.png"
     with pytest.raises(UserError, match="frame 3 is missing"):
         read_images(tmp_path)
 

@@ -10,6 +10,8 @@ from PIL import Image
 from typer.testing import CliRunner
 
 from debrisest.cli.app import app
+from debrisest.cli.reconstruct import _thinned
+from debrisest.vision.image_files import read_images
 from tests.vision.conftest import Scene
 
 pytest.importorskip("cv2")
@@ -125,3 +127,35 @@ def test_a_calibration_of_another_size_is_refused(tmp_path: Path) -> None:
     code, output = said(folder)
     assert code == 2
     assert "128 pixels wide" in output
+
+
+def test_of_many_images_one_of_several_is_taken_and_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for number in range(151):
+        (tmp_path / f"viff.{number:03d}.ppm").write_bytes(b"")
+    assert _thinned(tmp_path) == 3
+    assert "one of 3 of the 151 images is taken; --every 1" in capsys.readouterr().out
+    (tmp_path / "viff.150.ppm").unlink()
+    assert _thinned(tmp_path) == 2
+
+
+@pytest.mark.parametrize("suffix", ["ppm", "pgm", "tif", "webp"])
+def test_kinds_of_files_and_their_colours(tmp_path: Path, suffix: str) -> None:
+    shown = np.zeros((40, 60, 3), np.uint8)
+    shown[:] = (40, 70, 150)
+    shown[:, 30:] = 128
+    for number in (9, 10, 1):
+        Image.fromarray(shown).convert("L" if suffix == "pgm" else "RGB").save(
+            tmp_path / f"img_{number}.{suffix}"
+        )
+    found = read_images(tmp_path, colours=True, gaps=True)
+    assert found.names == tuple(f"img_{number}.{suffix}" for number in (1, 9, 10))
+    if suffix == "pgm":
+        assert found.chroma is None
+        return
+    assert found.chroma is not None
+    red, blue = np.moveaxis(found.chroma[0, 0], -1, 0)
+    assert abs(int(red[5, 5]) - 105) < 4  # 128 + 0.713 (40 - 70)
+    assert abs(int(blue[5, 5]) - 173) < 4
+    assert abs(int(red[5, 50]) - 128) < 3

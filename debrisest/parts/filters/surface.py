@@ -23,6 +23,10 @@ _ON_TABLE = (
     "; it turned about one axis, seen from above: its base is taken to be flat at the lowest "
     "points seen, and does not count as unseen"
 )
+_SUPPORT_CUT = (
+    "; it stands on a plane that turns with it, which is cut off: the base is taken to be flat "
+    "there, and does not count as unseen"
+)
 
 
 class SurfaceStatus(Outcome):
@@ -82,13 +86,14 @@ class Surface(FilterPart):
         )
 
     def _body(self, model: ShapeModel, run: int) -> Body:
-        images = model.images(run, required=self.outline == "silhouettes")
+        images = model.images(run, several=self.outline == "either")
         return reconstructed_body(*images, self.method, model.known_length, self.outline)
 
 
 def _in_words(body: Body) -> str:
     """Return how a mesh was made, and why."""
-    return _METHODS[body.method] + _BY_CLOUD * body.by_cloud + _ON_TABLE * body.on_table
+    below = _SUPPORT_CUT if body.support_cut else _ON_TABLE * body.on_table
+    return _METHODS[body.method] + _BY_CLOUD * body.by_cloud + below
 
 
 def _meshes(bodies: list[Body]) -> Data:

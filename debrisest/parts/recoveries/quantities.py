@@ -41,6 +41,9 @@ QUANTITIES = {
         ("run", "camera", "coefficient"), "1", "k1, k2, p1, p2, k3, as given or as images tell them"
     ),
     "found_focal_spread": Quantity(RUN, "1", "relative 1-sigma of the focal length; 0: given"),
+    "found_distortion_spread": Quantity(
+        RUN, "1", "1-sigma of k1; 0: given, or the images do not tell it"
+    ),
     "coverage": Quantity(RUN, "1", "share of epochs with an attitude", "1"),
     "pieces": Quantity(RUN, "1", "pieces of uninterrupted samples", "1", two_sided=True),
     "signs_right": Quantity(RUN, "1", "share of sign decisions that were right", "1"),

@@ -11,11 +11,13 @@ import numpy as np
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.problems.shape.model import pinhole_images
+from debrisest.reconstruction.given_places import laid_onto
 from debrisest.reconstruction.silhouettes import Frames, silhouettes
 from debrisest.reconstruction.structure import How, Rig, Structure, structure_from_motion
 from debrisest.roles import RecoveryPart
 
 _SCALED = "the baseline of the cameras gives the scale"
+_PLACED = "the places of the camera that were given tell the scale"
 _UNSCALED = "one camera gives no scale: only ratios are told, unless a length is known"
 
 
@@ -34,8 +36,9 @@ class StructureFromMotion(RecoveryPart):
         *("view_rotation", "view_translation", "cloud_point_r", "cloud_seen"),
         *("scale_spread", "reprojection"),
         *("found_camera_matrix", "found_lens_distortion", "found_focal_spread"),
+        "found_distortion_spread",
     )
-    version = 3
+    version = 4
     libraries = ("cv2", "pycolmap")
     kind: Literal["structure_from_motion"]
     leave_out: Literal["outside_silhouettes", "still_features"] = "outside_silhouettes"
@@ -46,7 +49,6 @@ class StructureFromMotion(RecoveryPart):
         """Return places (run, time), points (run, cloud_point) and how well they fit."""
         found = [self._structure(data, run) for run in range(len(data["run"]))]
         most = max(len(each.points) for each in found)
-        scaled = data["camera_matrix"].shape[1] > 1
         return {
             "view_rotation": np.stack([each.rotation for each in found]),
             "view_translation": np.stack([each.translation for each in found]),
@@ -57,7 +59,7 @@ class StructureFromMotion(RecoveryPart):
             "scale_spread": np.array([each.scale_sigma for each in found]),
             "reprojection": np.array([each.reprojection_px for each in found]),
             **_cameras(data, found),
-            "status": np.array([_SCALED if scaled else _UNSCALED] * len(found)),
+            "status": np.array([_scale(data)] * len(found)),
         }
 
     def _structure(self, data: Data, run: int) -> Structure:
@@ -69,11 +71,20 @@ class StructureFromMotion(RecoveryPart):
         folder = _folder(frames, rig, how)
         found = structure_from_motion(frames, masks, rig, folder, how)
         shutil.rmtree(folder, ignore_errors=True)
-        return found
+        if "given_rotation" not in data:
+            return found
+        return laid_onto(found, data["given_rotation"][run], data["given_translation"][run])
 
     def assess(self, data: Data) -> Data:
         """Return the share of frames that found a place."""
         return {"coverage": np.isfinite(data["view_translation"][..., 0]).mean(axis=-1)}
+
+
+def _scale(data: Data) -> str:
+    """Return where the scale comes from, in words."""
+    if "given_rotation" in data:
+        return _PLACED
+    return _SCALED if data["camera_matrix"].shape[1] > 1 else _UNSCALED
 
 
 def padded(values: Array, length: int) -> Array:
@@ -85,15 +96,16 @@ def padded(values: Array, length: int) -> Array:
 def _cameras(data: Data, found: list[Structure]) -> Data:
     """Return the cameras as given, but for what images tell of one that was not calibrated."""
     matrix, bent = data["camera_matrix"].copy(), data["lens_distortion"].copy()
-    spread = np.zeros(len(found))
+    spread, bending = np.zeros((2, len(found)))
     for run, each in enumerate(found):
         if each.lens is not None:
             matrix[run, 0], bent[run, 0] = each.lens.matrix, each.lens.distortion
-            spread[run] = each.lens.focal_spread
+            spread[run], bending[run] = each.lens.focal_spread, each.lens.distortion_sigma
     return {
         "found_camera_matrix": matrix,
         "found_lens_distortion": bent,
         "found_focal_spread": spread,
+        "found_distortion_spread": bending,
     }
 
 

@@ -12,12 +12,14 @@ from debrisest.errors import UserError
 from debrisest.files import content
 from debrisest.roles import Positive, SourcePart
 from debrisest.tracks.calibration import read_calibration
+from debrisest.tracks.camera_places import read_places
 from debrisest.tracks.types import Camera
 from debrisest.tracks.write_calibration import camera_matrix
 from debrisest.vision.focal_length import first_focal
 from debrisest.vision.image_files import SUFFIXES, TIMES, ImageSequence, read_images
 
 _COEFFICIENTS, _FEWEST = 5, 3
+_PLACES = ".txt"
 
 
 class MeasuredImages(SourcePart):
@@ -32,8 +34,10 @@ class MeasuredImages(SourcePart):
     folder: str
     """A folder of images (of a pair: with `left` and `right` in it), or a video file."""
     camera: str | None = None
-    """Calibration in OpenCV's YAML, which a pair needs; none: that of one camera follows from its
-    images, with a start from EXIF or the field of view."""
+    """Calibration in OpenCV's YAML, which a pair needs; or a text file with the matrix, rotation
+    and translation of each image of one camera (`name K R t`, or `name P`), which give the scale
+    too. None: that of one camera follows from its images, with a start from EXIF or the field of
+    view."""
     field_of_view_deg: Annotated[float, Field(gt=1, lt=170)] | None = None
     """Across the longer side of an image, where nothing is calibrated; none: EXIF, or 50."""
     widest_px: int | None = Field(None, ge=64)
@@ -45,16 +49,40 @@ class MeasuredImages(SourcePart):
 
     def read(self, folder: Path) -> Data:
         """Return images with their times, and what is known of the cameras."""
-        images = read_images(folder / self.folder, self.widest_px, gaps=True)
+        images = read_images(folder / self.folder, self.widest_px, gaps=True, colours=True)
         times = self._times(images)[:: self.every]
         if len(times) < _FEWEST:
             told = "one image" if len(times) == 1 else f"{len(times)} images"
             raise UserError(f"{images.source}: {told}; a body that turns needs {_FEWEST}, or more")
+        chroma = images.chroma
         return {
             "run": np.zeros(1),
             "time_s": times - times[0],
             "measured_image": images.frames[None, :: self.every],
-            **(self._uncalibrated(images) if self.camera is None else self._known(folder, images)),
+            **({} if chroma is None else {"measured_chroma": chroma[None, :: self.every]}),
+            **self._cameras(folder, images),
+        }
+
+    def _cameras(self, folder: Path, images: ImageSequence) -> Data:
+        if self.camera is None:
+            return self._uncalibrated(images)
+        if Path(self.camera).suffix.lower() == _PLACES:
+            return self._placed(folder, images)
+        return self._known(folder, images)
+
+    def _placed(self, folder: Path, images: ImageSequence) -> Data:
+        """Return the camera of a list of places, and these places."""
+        path = folder / str(self.camera)
+        if len(images.cameras) > 1 or not images.names:
+            raise UserError(f"{path}: places are of the images of one camera, in a folder")
+        found = read_places(path, images.names)
+        matrix = found.matrix
+        focal, centre = (matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2])
+        return _one_camera(_matrix(Camera("camera", focal, centre), images.reduced)) | {
+            "given_rotation": found.rotation[None, :: self.every],
+            "given_translation": found.translation[None, :: self.every],
+            "focal_spread": np.zeros(1),
+            "focal_source": np.array([f"the places {path.name}"]),
         }
 
     def _known(self, folder: Path, images: ImageSequence) -> Data:
@@ -82,13 +110,9 @@ class MeasuredImages(SourcePart):
                 f"{images.source}: a stereo pair needs its calibration, from which its scale comes"
             )
         height, width = images.frames.shape[2:]
-        path = images.first or Path(images.source)
+        path = Path(images.source).joinpath(*images.names[:1])
         first = first_focal(path, (width, height), self.field_of_view_deg)
-        return {
-            "camera_matrix": first.matrix((width, height))[None, None],
-            "lens_distortion": np.zeros((1, 1, _COEFFICIENTS)),
-            "rig_rotation": np.eye(3)[None, None],
-            "rig_translation": np.zeros((1, 1, 3)),
+        return _one_camera(first.matrix((width, height))) | {
             "focal_spread": np.array([first.spread]),
             "focal_source": np.array([first.source]),
         }
@@ -108,6 +132,16 @@ class MeasuredImages(SourcePart):
         if self.rate_hz is not None:
             return np.arange(len(images.frames)) / self.rate_hz
         return np.arange(float(len(images.frames))) if images.times is None else images.times
+
+
+def _one_camera(matrix: Array) -> Data:
+    """Return a camera (3, 3) without distortion that stands alone."""
+    return {
+        "camera_matrix": matrix[None, None],
+        "lens_distortion": np.zeros((1, 1, _COEFFICIENTS)),
+        "rig_rotation": np.eye(3)[None, None],
+        "rig_translation": np.zeros((1, 1, 3)),
+    }
 
 
 def _matrix(camera: Camera, reduced: float) -> Array:

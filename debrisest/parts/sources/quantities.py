@@ -13,6 +13,10 @@ QUANTITIES = {
     "rig_translation": Quantity(
         ("run", "camera", "axis"), "m", "origin of the first camera in a camera's axes"
     ),
+    "given_rotation": Quantity(
+        (*TIME, "row", "column"), "1", "turns the axes of places that are given into the camera's"
+    ),
+    "given_translation": Quantity(TIME_VECTOR, "m", "origin of these axes in the camera's"),
     "measured_q_if_covariance": Quantity(
         (*TIME, "row", "column"), "rad2", "covariance of the turn, inertial axes"
     ),

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data
-from debrisest.reconstruction.silhouettes import Frames, silhouettes
+from debrisest.reconstruction.silhouettes import Frames, readings, silhouettes
 from debrisest.reconstruction.structure import Lens, Rig, Structure
 from debrisest.reconstruction.undistorted import undistorted
 
@@ -20,8 +20,8 @@ class ImagesOfBody(NamedTuple):
 
     frames: Frames
     """(time, camera, row, column)."""
-    masks: BoolArray
-    """The body's silhouettes (time, camera, row, column)."""
+    readings: list[BoolArray]
+    """Silhouettes (time, camera, row, column): one reading, or several to choose from."""
     rig: Rig
     structure: Structure
 
@@ -34,19 +34,26 @@ class ShapeModel(NamedTuple):
     """The longest distance between two points of the body and its 1-sigma, m."""
     error_names: tuple[str, ...] = ERROR_NAMES
 
-    def images(self, run: int, required: bool = True) -> ImagesOfBody:
+    def images(self, run: int, several: bool = False) -> ImagesOfBody:
         """Return what there is of a run, given by its place among the runs.
 
-        Silhouettes that are not required are empty where nothing tells them.
+        Where several readings of the silhouettes are wanted there may be none: nothing tells them.
         """
         frames, rig = pinhole_images(self.data, run, "found_")
         try:
-            masks = silhouettes(frames)
+            masks = readings(frames, self._chroma(run))
         except ValueError:
-            if required:
+            if not several:
                 raise
-            masks = np.zeros(frames.shape, dtype=np.bool_)
+            masks = []
         return ImagesOfBody(frames, masks, rig, structure_of(self.data, run))
+
+    def _chroma(self, run: int) -> Frames | None:
+        """Return the colours of the images without distortion, if they have any."""
+        if "measured_chroma" not in self.data:
+            return None
+        lens = (self.data[f"found_{name}"][run] for name in ("camera_matrix", "lens_distortion"))
+        return undistorted(self.data["measured_chroma"][run].astype(np.uint8), *lens)
 
 
 def seen(data: Data, run: int) -> tuple[Frames, BoolArray, Rig]:

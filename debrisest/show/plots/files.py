@@ -46,6 +46,7 @@ def save(figure: Figure, target: Path | BytesIO, form: str, **options: Any) -> N
 
 
 def _rasterise_dense(figure: Figure) -> None:
+    """Draw what is dense as an image; solids have no paths until they are drawn, and say it."""
     for axis in figure.axes:
         for line in axis.lines:
             clouded = line.get_marker() not in _NO_MARKER
@@ -53,4 +54,5 @@ def _rasterise_dense(figure: Figure) -> None:
             line.set_rasterized(np.size(line.get_xdata()) > most)
         for collection in axis.collections:
             vertices = sum(np.shape(path.vertices)[0] for path in collection.get_paths())
-            collection.set_rasterized(vertices > MOST_VERTICES)
+            dense = bool(collection.get_rasterized()) or vertices > MOST_VERTICES
+            collection.set_rasterized(dense)

@@ -73,3 +73,16 @@ def test_the_backend_of_the_environment_plays_no_part(backend: str, tmp_path: Pa
     subprocess.run([sys.executable, "-c", code, tmp_path], env=environment, check=True)
     ours = {path.name: path.read_bytes() for path in write(_figure(), tmp_path / "own", "figure")}
     assert ours == {name: (tmp_path / name).read_bytes() for name in ours}
+
+
+def test_a_solid_that_asks_for_it_is_drawn_as_an_image(tmp_path: Path) -> None:
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    corners = np.random.default_rng(1).random((3000, 3, 3))
+    figure = Figure()
+    axes = figure.add_subplot(projection="3d")
+    axes.add_collection(Poly3DCollection(corners, rasterized=True))
+    (path,) = write(figure, tmp_path, "solid", ("svg",))
+    drawn = path.read_text()
+    assert drawn.count("<path") < 200
+    assert "<image" in drawn

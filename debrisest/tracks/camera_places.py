@@ -1,0 +1,84 @@
+"""Lists of cameras as image sets for reconstruction have them: a line for each image.
+
+``name`` with nine numbers of the camera matrix, nine of the rotation and three of the translation,
+row by row, or with the twelve of a projection matrix ``K [R t]``; both take points to the camera,
+``x_c = R x + t``. A first line with the number of images may be there.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+
+from debrisest.arrays import Array
+from debrisest.errors import UserError
+
+_SAME = 0.01
+"""Of the focal length: how far the matrices of one camera may differ."""
+_WANTED = "expected name K(9) R(9) t(3), or name P(12), numbers row by row"
+
+
+class CameraPlaces(NamedTuple):
+    """One camera and where it was in each image."""
+
+    matrix: Array
+    """Camera matrix (3, 3), px, the mean over the images."""
+    rotation: Array
+    """(image, 3, 3)."""
+    translation: Array
+    """(image, 3), in the unit of the file."""
+
+
+def read_places(path: Path, names: Sequence[str]) -> CameraPlaces:
+    """Return the camera of images, and its places in their order.
+
+    Raises `UserError` with the line: other counts of numbers, no rotation, no positive focal
+    length; an image without a line; matrices that differ.
+    """
+    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    found = {}
+    for number, line in enumerate(lines, start=1):
+        fields = line.split("#")[0].split()
+        if len(fields) > 1:
+            found[Path(fields[0]).name] = _camera(fields[1:], f"{path}:{number}")
+    if lacking := [name for name in names if name not in found]:
+        there = ", ".join(list(found)[:3]) or "nothing"
+        raise UserError(f"{path}: no line for the image {lacking[0]}; it has {there} ...")
+    matrix, rotation, translation = (np.stack(each) for each in zip(*(found[n] for n in names)))
+    mean = matrix.mean(axis=0)
+    if np.abs(matrix - mean).max() > _SAME * mean[0, 0]:
+        raise UserError(
+            f"{path}: the camera matrices differ by more than {_SAME:.0%}: one is taken"
+        )
+    return CameraPlaces(mean, rotation, translation)
+
+
+def _camera(fields: list[str], where: str) -> tuple[Array, Array, Array]:
+    """Return matrix, rotation and translation of a line."""
+    try:
+        values = np.array([float(field) for field in fields])
+    except ValueError as error:
+        raise UserError(f"{where}: {error}; {_WANTED}") from None
+    if len(values) not in (12, 21) or not np.isfinite(values).all():
+        raise UserError(f"{where}: {len(values)} numbers; {_WANTED}")
+    if len(values) == 21:
+        matrix, rotation = values[:18].reshape(2, 3, 3)
+        translation = values[18:]
+    else:
+        matrix, rotation, translation = _factors(values.reshape(3, 4))
+    proper = np.abs(rotation @ rotation.T - np.eye(3)).max() < 1e-2 and np.linalg.det(rotation) > 0
+    if not (proper and matrix[0, 0] > 0 and matrix[1, 1] > 0):
+        raise UserError(f"{where}: no rotation, or no positive focal length; {_WANTED}")
+    return matrix, rotation, translation
+
+
+def _factors(projection: Array) -> tuple[Array, Array, Array]:
+    """Return the factors of a projection matrix (3, 4), known up to a factor."""
+    matrix, rotation = scipy.linalg.rq(projection[:, :3])
+    signs = np.sign(np.diag(matrix)) + (np.diag(matrix) == 0.0)
+    matrix, rotation = matrix * signs, signs[:, None] * rotation
+    shift = scipy.linalg.solve_triangular(matrix, projection[:, 3])
+    turned = np.sign(np.linalg.det(rotation))
+    return matrix / matrix[2, 2], turned * rotation, turned * shift

@@ -1,0 +1,58 @@
+"""Lists of cameras: matrices, rotations and translations of images, or their projections."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from debrisest.tracks.camera_places import read_places
+from tests.tracks.conftest import refusal
+
+MATRIX = np.array([[1520.4, 0.0, 302.3], [0.0, 1525.9, 246.9], [0.0, 0.0, 1.0]])
+TURNS = Rotation.from_rotvec([[0.1, 0.2, -0.3], [1.0, -2.0, 0.5]]).as_matrix()
+SHIFTS = np.array([[0.01, -0.02, 0.6], [0.03, 0.0, 0.55]])
+NAMES = ("t1.png", "t2.png")
+
+
+def rows(values: list[np.ndarray]) -> list[str]:
+    return [f"{name} {' '.join(map(repr, each.tolist()))}" for name, each in zip(NAMES, values)]
+
+
+def factors() -> list[np.ndarray]:
+    return [np.concatenate([MATRIX.ravel(), r.ravel(), t]) for r, t in zip(TURNS, SHIFTS)]
+
+
+def projections(factor: float) -> list[np.ndarray]:
+    parts = (np.concatenate([r, t[:, None]], axis=1) for r, t in zip(TURNS, SHIFTS))
+    return [factor * (MATRIX @ part).ravel() for part in parts]
+
+
+@pytest.mark.parametrize("values", [factors(), projections(1.0), projections(-0.02)])
+@pytest.mark.parametrize("head", [[], ["2"], ["# of a gantry", "2"]])
+def test_a_camera_and_its_places_are_read(
+    tmp_path: Path, values: list[np.ndarray], head: list[str]
+) -> None:
+    path = tmp_path / "par.txt"
+    path.write_text("\n".join([*head, *rows(values)]) + "\n")
+    found = read_places(path, NAMES[::-1])
+    np.testing.assert_allclose(found.matrix, MATRIX, atol=1e-8)
+    np.testing.assert_allclose(found.rotation, TURNS[::-1], atol=1e-10)
+    np.testing.assert_allclose(found.translation, SHIFTS[::-1], atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        (["t1.png 1 2 3"], "par.txt:1: 3 numbers; expected name K(9) R(9) t(3)"),
+        (["t1.png 1 2 x"], "could not convert"),
+        (rows(factors())[:1], "no line for the image t2.png; it has t1.png"),
+        (rows([-one for one in factors()]), "par.txt:1: no rotation, or no positive focal length"),
+        (rows([factors()[0], factors()[1] * np.repeat([1.1, 1.0], [2, 19])]), "matrices differ"),
+        ([], "it has nothing"),
+    ],
+)
+def test_what_is_no_list_of_places_is_told(tmp_path: Path, lines: list[str], words: str) -> None:
+    path = tmp_path / "par.txt"
+    path.write_text("\n".join(lines))
+    assert words in refusal(lambda: read_places(path, NAMES))
