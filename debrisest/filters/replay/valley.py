@@ -34,11 +34,12 @@ _OPEN = 0.6
 followed."""
 _LOW, _STEEP = 0.7, 1.7
 """Of the rise of a parabola: where the floor is to be followed on, and where it tells nothing."""
-_GROWTH, _LEVELS = 8.0, 5
+_GROWTH, _LEVELS = 3.0, 8
 _FIRM = 1e-3  # sigma with which an error is held, in its own sigmas
-_ITERATIONS, _TOLERANCE = 12, 1.0
-"""With six iterations some floors were taken for steep that were not found yet; eight found all."""
-_MET = 0.98
+_ITERATIONS, _TOLERANCE = 24, 1.0
+"""With six iterations some floors were taken for steep that were not found yet."""
+_FARTHER = 1.2
+"""Times as far as before, at which a floor that goes on is found at least: else it ends there."""
 _TOGETHER = 25  # runs at a time, for the sake of memory
 
 
@@ -138,7 +139,8 @@ def _followed(
     spread = scaled_inverse(at.information)
     toward = sides.sign[:, None] * spread[sides.run, :, sides.error] / sides.sigma[:, None]
     state = move(model.of(sides.run), at.state[sides.run], _FAR * toward)
-    distance, largest = _FAR * sides.sigma, np.zeros(len(sides.run))
+    distance = _FAR * sides.sigma
+    behind, largest = np.zeros((2, len(sides.run)))
     ends, far = state.copy(), np.full(len(sides.run), np.nan)
     going = np.flatnonzero(sides.sigma < _OPEN / _FAR * sides.farthest)
     for level in range(_LEVELS if len(going) else 0):
@@ -149,13 +151,14 @@ def _followed(
         better = (reached / sigmas > largest[going]) & ((level > 0) | (rise < _STEEP * _FAR**2))
         ends[going[better]], far[going[better]] = found[better], sigmas[better]
         largest[going[better]] = (reached / sigmas)[better]
-        on = open_ & (reached > _MET * distance[going]) & (reached < _MET * side.farthest)
+        on = open_ & (reached > _FARTHER * behind[going]) & (_FARTHER * reached < side.farthest)
+        behind[going] = reached
         going, side, found = going[on], take(side, np.flatnonzero(on)), found[on]
         if len(going) == 0:
             break
-        farther = np.minimum(_GROWTH * distance[going], side.farthest)
-        state[going] = _pushed(model.of(side.run), found, side, farther - distance[going])
-        distance[going] = farther
+        distance[going] = np.minimum(_GROWTH * behind[going], side.farthest)
+        by = distance[going] - behind[going]
+        state[going] = _pushed(model.of(side.run), found, side, by)
     part = model.of(sides.run)
     at_k, ends_k = (part.trajectory(one, 0, k)[0][:, -1] for one in (at.state[sides.run], ends))
     error = part.inverse_chart(at_k) @ part.difference(ends_k, at_k)[..., None]
