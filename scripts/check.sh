@@ -31,11 +31,14 @@ debrisest sweep first_steps.yaml --runs 10 --check --out "$results" >>"$results/
 debrisest sweep li2011.yaml pesce2017.yaml random_observers.yaml --runs 20 --check --out "$results" >>"$results/tables.txt"
 debrisest sweep volpe2017.yaml --case nominal --case spin-free \
     --runs 20 --check --out "$results" >>"$results/tables.txt"
+debrisest sweep random_stereo.yaml --estimator best \
+    --runs 4 --check --out "$results" >>"$results/tables.txt"
 debrisest sweep biondi2017.yaml biondi2017-noise.yaml biondi2017-robust.yaml pesce2017-robust.yaml \
     random_targets.yaml --runs 4 --check --out "$results" >>"$results/tables.txt"
 # Every case of every scenario at least once, but for images, of which the tests have a short chain;
 # what has run already is not run again.
 debrisest sweep $(ls *.yaml | grep -v images) --runs 1 --out "$results" >>"$results/tables.txt"
+debrisest table random_shapes.yaml --runs 1 --check --out "$results" >>"$results/tables.txt"
 debrisest plot biondi2017.yaml li2011.yaml pesce2017.yaml volpe2017.yaml \
     --case 1 --case fig4 --case B --case nominal --runs 10 --out "$results" >/dev/null
 echo "all checks passed"

@@ -21,9 +21,9 @@ POINTS = 5
 class Experiment:
     """The paper's case C, or A with the angular acceleration, over a few seconds."""
 
-    def __init__(self, runs, epochs, seed, slow=False, shown=None, q_lc=(1, 0, 0, 0)):
+    def __init__(self, runs, epochs, seed, slow=False, shown=None, q_lc=(1, 0, 0, 0), rate=None):
         rng = np.random.default_rng(seed)
-        rate = (-0.1, -0.1, 0.034) if slow else (-1.0, -1.0, 0.934)
+        rate = rate or ((-0.1, -0.1, 0.034) if slow else (-1.0, -1.0, 0.934))
         start = np.zeros((runs, 15 + 3 * POINTS))
         start[:, :9] = [10, 60, 10, 0.01, -0.0225, -0.01, *np.radians(rate)]
         # The cameras, and the target before them, are turned.

@@ -8,6 +8,7 @@ from debrisest.filters.bound.motion import paired_errors
 from debrisest.filters.replay.gauss_newton import move
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay, smooth
+from debrisest.filters.replay.valley import with_bends
 from debrisest.filters.status import ReplayStatus
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
@@ -141,3 +142,15 @@ def test_where_all_runs_are_lost_there_is_nothing_to_smooth(experiment):
     final = smooth(test.model, test.prior, test.covariance, test.measured, lost)
     assert np.isnan(final.state[:, -1]).all()
     np.testing.assert_array_equal(final.status, lost.status)
+
+
+def test_ratios_that_a_spin_does_not_tell_are_not_told_for_certain(experiment):
+    """Of a spin about one axis the images show a tilt times a slope of the inertia, no more."""
+    test = experiment(16, 101, 3, rate=(0.0, 0.0, 2.0))
+    found = test.estimate()
+    told = with_bends(test.model, test.prior, test.covariance, test.measured, found)
+    off = np.abs(errors(test, found.state)[:, -1])
+    ratios = slice(12, 14)
+    assert np.sum(off[:, ratios] / found.sigma[:, -1, ratios] > 5.0) > 2
+    assert np.max(off / told.sigma[:, -1]) < 5.0
+    assert np.mean((off / told.sigma[:, -1]) ** 2) > 0.6, "sigmas that are too large tell nothing"

@@ -3,9 +3,9 @@
 Of an error that the measurements hardly tell, the valley of the cost may bend, and end far from
 where the curvature at the estimate says: of a body that spins about one axis, they tell the product
 of its tilt and of a slope of its inertia, and either may be what is zero. So the floor of the cost,
-the least with that error held, is sought three sigma to both sides, and followed on to where it has
-risen by nine. With u and d the errors of one sigma to either side, the covariance is that of both,
-``(u u^T + d d^T) / 2``: of half their way, and of how far its middle is off, as in
+the least with that error held, is sought three sigma to both sides, and followed on where it is
+lower than nine. With u and d the errors of one sigma to either side, the covariance is that of
+both, ``(u u^T + d d^T) / 2``: of half their way, and of how far its middle is off, as in
 `batch/spread.py`.
 """
 
@@ -27,17 +27,19 @@ from debrisest.filters.replay.measured_arc import (
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import take
 
-_FAR = 3.0
+_FAR, _SURE = 3.0, 5.0
+"""Sigmas at which a valley is looked for, and to which one that is open is followed."""
 _OPEN = 0.6
 """Part of the prior's sigma from which on an error is as good as untold: no valley is to be
 followed."""
 _LOW, _STEEP = 0.7, 1.7
 """Of the rise of a parabola: where the floor is to be followed on, and where it tells nothing."""
-_GROWTH, _LEVELS = 8.0, 5
+_GROWTH, _LEVELS = 3.0, 8
 _FIRM = 1e-3  # sigma with which an error is held, in its own sigmas
-_ITERATIONS, _TOLERANCE = 12, 1.0
-"""With six iterations some floors were taken for steep that were not found yet; eight found all."""
-_MET = 0.98
+_ITERATIONS, _TOLERANCE = 24, 1.0
+"""With six iterations some floors were taken for steep that were not found yet."""
+_FARTHER = 1.2
+"""Times as far as before, at which a floor that goes on is found at least: else it ends there."""
 _TOGETHER = 25  # runs at a time, for the sake of memory
 
 
@@ -131,33 +133,46 @@ def _followed(
 ) -> Array:
     """Errors of epoch k (side, n_e) per sigma, where the floor is as high as sigmas say.
 
-    It is followed until it has risen by nine, until no body is beyond, or the prior forbids it; of
-    all places that are passed the one counts that asks for the largest sigma.
+    It is followed to five sigma, to where no body is beyond, or the prior forbids it; of all places
+    that are passed the one counts that asks for the largest sigma.
     """
     spread = scaled_inverse(at.information)
     toward = sides.sign[:, None] * spread[sides.run, :, sides.error] / sides.sigma[:, None]
     state = move(model.of(sides.run), at.state[sides.run], _FAR * toward)
-    distance, largest = _FAR * sides.sigma, np.zeros(len(sides.run))
+    distance = _FAR * sides.sigma
+    behind, largest = np.zeros((2, len(sides.run)))
     ends, far = state.copy(), np.full(len(sides.run), np.nan)
     going = np.flatnonzero(sides.sigma < _OPEN / _FAR * sides.farthest)
-    for level in range(_LEVELS):
-        if len(going) == 0:
-            break
+    for level in range(_LEVELS if len(going) else 0):
         side = take(sides, going)
         found, rise, reached = _floor(model, arc, at, side, state[going], distance[going])
         sigmas = np.sqrt(np.maximum(rise, 1.0))
-        open_ = rise < (1.0 if level else _LOW) * _FAR**2
+        open_ = rise < (_SURE**2 if level else _LOW * _FAR**2)
         better = (reached / sigmas > largest[going]) & ((level > 0) | (rise < _STEEP * _FAR**2))
         ends[going[better]], far[going[better]] = found[better], sigmas[better]
         largest[going[better]] = (reached / sigmas)[better]
-        state[going] = found
-        on = open_ & (reached > _MET * distance[going]) & (reached < _MET * side.farthest)
-        going = going[on]
-        distance[going] = np.minimum(_GROWTH * distance[going], sides.farthest[going])
+        on = open_ & (reached > _FARTHER * behind[going]) & (_FARTHER * reached < side.farthest)
+        behind[going] = reached
+        going, side, found = going[on], take(side, np.flatnonzero(on)), found[on]
+        if len(going) == 0:
+            break
+        distance[going] = np.minimum(_GROWTH * behind[going], side.farthest)
+        by = distance[going] - behind[going]
+        state[going] = _pushed(model.of(side.run), found, side, by)
     part = model.of(sides.run)
     at_k, ends_k = (part.trajectory(one, 0, k)[0][:, -1] for one in (at.state[sides.run], ends))
     error = part.inverse_chart(at_k) @ part.difference(ends_k, at_k)[..., None]
     return np.asarray(sides.sign[:, None] * error[..., 0] / far[:, None])
+
+
+def _pushed(model: ReplayModel, state: Array, side: _Sides, by: Array) -> Array:
+    """States (side, n) whose error is pushed on by itself: the others follow, best from there.
+
+    Of a product of both, what is linearised with the one before it moves is wrong for the other.
+    """
+    step = np.zeros((len(state), len(model.error_names)))
+    step[np.arange(len(state)), side.error] = side.sign * by
+    return move(model, state, step)
 
 
 def _floor(
