@@ -269,11 +269,12 @@ def ended_after(seconds: int) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
+@pytest.mark.parametrize("error", [MemoryError, ImportError("x.so: failed to map segment")])
 def test_too_little_memory_is_a_sentence(
-    small: Path, swept: Path, cli: Callable, monkeypatch: pytest.MonkeyPatch
+    error: Exception, small: Path, swept: Path, cli: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: object, **__: object) -> None:
-        raise MemoryError
+        raise error
 
     monkeypatch.setattr("debrisest.results.store.read_image", full)
     done = cli("table", small, "--out", swept)

@@ -1,5 +1,6 @@
 """Names and texts that later stages cannot carry are refused with their place and the reason."""
 
+import json
 import os
 import zlib
 from pathlib import Path
@@ -118,6 +119,14 @@ def test_accents_in_one_sign_or_two_tell_no_scenarios_and_no_features_apart(
     twins[0].write_text(text.replace("    d: {", "    e\u0301: {"))
     result = cli("validate", twins[0])
     assert (result.exit_code, "two features have one name" in result.stderr) == (2, True)
+
+
+@pytest.mark.parametrize("name", ["a\tb", "a\nb", " ", ""])
+def test_features_have_names_that_figures_can_show(name: str, small: Path, cli: Any) -> None:
+    text = small.read_text().replace("    b: {position", f"    {json.dumps(name)}: {{position")
+    small.write_text(text)
+    result = cli("validate", small)
+    assert (result.exit_code, "is no name" in result.stderr) == (2, True)
 
 
 def test_texts_beyond_the_basic_plane_are_texts(small: Path) -> None:
