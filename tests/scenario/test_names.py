@@ -96,6 +96,23 @@ def test_devices_and_endless_files_are_no_scenarios(tmp_path: Path, cli: Any) ->
         assert (result.exit_code, why in result.stderr) == (2, True)
 
 
+@pytest.mark.parametrize("kind", ["sparse", "zero", "pipe"])
+def test_published_values_of_any_length_and_none_are_refused_at_once(
+    kind: str, small: Path, cli: Any
+) -> None:
+    path = small.with_suffix(".csv")
+    path.unlink()
+    if kind == "sparse":
+        with path.open("wb") as file:
+            file.truncate(2**40)
+    elif kind == "zero":
+        path.symlink_to("/dev/zero")
+    else:
+        os.mkfifo(path)
+    result = cli("validate", small)
+    assert (result.exit_code, "published values cannot be read" in result.stderr) == (2, True)
+
+
 def test_a_pipe_that_nobody_writes_to_is_no_scenario(tmp_path: Path, cli: Any) -> None:
     os.mkfifo(pipe := tmp_path / "pipe.yaml")
     result = cli("validate", pipe)
