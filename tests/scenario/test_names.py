@@ -155,6 +155,7 @@ def test_texts_beyond_the_basic_plane_are_texts(small: Path) -> None:
 def test_what_is_told_has_no_control_characters() -> None:
     (told,) = UserError("--case \x1b[2J\ud800").problems
     assert told == "--case \\x1b[2J\\ud800"
+    assert UserError("a\u3164\u034f").problems == ["a\\u3164\\u034f"]
     assert UserError("a\u200eb\U000e0041\r\n\tc").problems == ["a\\u200eb\\U000e0041\\r\n\tc"]
 
 
