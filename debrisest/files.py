@@ -7,6 +7,7 @@ import socket
 import unicodedata
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from math import inf
 from pathlib import Path
 
 try:
@@ -15,6 +16,8 @@ except ImportError:  # on Windows
     fcntl = None  # type: ignore[assignment]
 
 
+MOST_BYTES = 20_000_000
+"""Of a text that a person writes: a scenario, published values, a start."""
 _ours: set[Path] = set()
 """The temporary files that this process writes to."""
 
@@ -45,10 +48,12 @@ def content(path: Path) -> bytes:
     return path.read_bytes()
 
 
-def require_ending(path: Path) -> None:
-    """Raise OSError for a pipe or a device, which may never end."""
+def require_ending(path: Path, most: float = inf) -> None:
+    """Raise OSError for a pipe or a device, which may never end, and above ``most`` bytes."""
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise OSError(errno.EINVAL, "this is a pipe or a device, not a file", str(path))
+    if path.is_file() and path.stat().st_size > most:
+        raise OSError(errno.EFBIG, f"over {most / 1e6:g} MB", str(path))
 
 
 def alike(name: str) -> str:

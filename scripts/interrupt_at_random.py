@@ -49,9 +49,12 @@ def main(times: dict[signal.Signals, int], seed: int, machines: Sequence[Machine
                 said += ["left a temporary file"] * bool(list(out.rglob(".*.tmp")))
                 said += ["other tables or data"] * (content(out) != expected)
                 if said:
-                    print(f"{number.name}, {' '.join(machine)}, after {delay:.3f} s:", *said)
+                    after = f"{number.name}, {' '.join(machine)}, after {delay:.3f} s:"
+                    print(after, *said, flush=True)
                 wrong, early = wrong + bool(said), early + finished
-            print(f"{number.name}: {count} sweeps, {wrong} wrong, {early} over before", flush=True)
+                if turn % 10 == 9 or turn == count - 1:
+                    told = f"{turn + 1} sweeps, {wrong} wrong, {early} over before"
+                    print(f"{number.name}: {told}", flush=True)
             all_wrong += wrong
     return all_wrong
 

@@ -154,6 +154,7 @@ def test_a_code_page_that_lacks_letters(small: Path, reference: Path, shell: Cal
 
 ODD_ENVIRONMENTS = {
     "numbers": {"COLUMNS": "\u00b2", "LINES": "\u0bf0", "SOURCE_DATE_EPOCH": "soon"},
+    "long numbers": {"COLUMNS": "9" * 30, "LINES": "1", "SOURCE_DATE_EPOCH": "9" * 20},
     "terminal": {"COLUMNS": "0", "TERM": "\x1b[2J", "NO_COLOR": "1", "FORCE_COLOR": "1"},
     "python": {"PYTHONOPTIMIZE": "2", "PYTHONWARNINGS": "error", "PYTHONHASHSEED": "3"},
     "language": {"LC_ALL": "xx_YY", "LANG": "xx.UTF-99", "PYTHONUTF8": "0"},
@@ -269,11 +270,12 @@ def ended_after(seconds: int) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
+@pytest.mark.parametrize("error", [MemoryError, ImportError("x.so: failed to map segment")])
 def test_too_little_memory_is_a_sentence(
-    small: Path, swept: Path, cli: Callable, monkeypatch: pytest.MonkeyPatch
+    error: Exception, small: Path, swept: Path, cli: Callable, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: object, **__: object) -> None:
-        raise MemoryError
+        raise error
 
     monkeypatch.setattr("debrisest.results.store.read_image", full)
     done = cli("table", small, "--out", swept)
@@ -295,3 +297,16 @@ def test_paths_that_are_no_text_are_refused_where_results_would_name_them(
 
 def test_results_go_to_a_folder_that_is_no_text(small: Path, tmp_path: Path, sweep: Callable):
     assert sweep(small, tmp_path / "r\udcff", *ONE).exit_code == 0
+
+
+@pytest.mark.parametrize("folder", ["results", "results/small", "results/small/slow"])
+def test_a_folder_that_is_moved_away_while_a_sweep_runs(
+    folder: str, small: Path, reference: Path, shell: Callable
+) -> None:
+    """The sweep ends with sentences, or makes the folder anew; nobody counts what is not there."""
+    seen = 'while [ -z "$(ls results/small/slow/filter* 2>/dev/null)" ]; do sleep .1; done'
+    sweep = "$debrisest sweep small.yaml --jobs 1 --quiet"
+    done = shell(f"{sweep} >first & {seen}; mv {folder} away; wait $!; echo $?; {sweep} >again")
+    assert done.stdout.strip() in ("0", "1", "2"), done.stderr
+    tables = [place / "small" / "tables.csv" for place in (small.parent / "results", reference)]
+    assert tables[0].read_bytes() == tables[1].read_bytes()

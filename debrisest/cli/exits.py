@@ -44,6 +44,10 @@ class Commands(TyperGroup):
             _stop(2, _sentence(error))
         except MemoryError:
             _stop(2, _NO_MEMORY)
+        except ImportError as error:
+            if "failed to map" not in str(error):
+                raise
+            _stop(2, _NO_MEMORY)
         except KeyboardInterrupt as error:
             _stop(getattr(error, "exit_code", 130), SENTENCE)
 

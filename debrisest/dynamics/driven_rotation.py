@@ -10,8 +10,8 @@ from debrisest.attitude.vectors import matrix_of_cross
 
 Torque = Callable[[float, Array], Array]
 """Torque ``(3,)`` in body axes, N m, at a time, s, and a unit quaternion ``q_ib (4,)``."""
-FASTEST = 1e3
-"""rad/s; a body that turns faster takes too long to be integrated."""
+FASTEST = 200.0
+"""rad/s about an axis, more than a scenario can give; what turns faster takes long to integrate."""
 
 
 def driven(

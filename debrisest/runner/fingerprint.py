@@ -3,7 +3,7 @@
 import platform
 from functools import cache
 from hashlib import sha256
-from importlib.metadata import version
+from importlib import import_module
 from pathlib import Path
 
 from debrisest import compiled
@@ -13,10 +13,11 @@ _BELOW = ("numpy", "scipy", "h5py", "pydantic")
 
 @cache
 def fingerprint() -> dict[str, str]:
-    """Return the versions by name, and of this package a digest of its source."""
+    """Return the versions of what is imported, and of this package a digest of its source."""
     package = Path(__file__).parent.parent
     source = sha256()
     for path in sorted(package.rglob("*.py")):
         source.update(f"{path.relative_to(package).as_posix()}\0".encode() + path.read_bytes())
-    versions = {name: version(name) for name in _BELOW} | {"numba": compiled.version()}
+    versions = {name: str(import_module(name).__version__) for name in _BELOW}
+    versions["numba"] = compiled.version()
     return {"debrisest": source.hexdigest()[:16], "python": platform.python_version(), **versions}

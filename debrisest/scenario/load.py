@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from debrisest.catalog import required_keys
 from debrisest.errors import UserError, allowed_names, meant
-from debrisest.files import require_ending
+from debrisest.files import MOST_BYTES, require_ending
 from debrisest.plugins.load import Plugin, load_plugins
 from debrisest.scenario.case import Case
 from debrisest.scenario.checks import case_problems, file_problems
@@ -32,9 +32,6 @@ from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
 
 NOMINAL = "nominal"
 """The case of a scenario that has neither cases nor a grid."""
-
-
-MOST_BYTES = 20_000_000
 
 
 class LoadedScenario(NamedTuple):
@@ -115,9 +112,8 @@ def _laid_on(base: Document, over: Document) -> Document:
 
 def _read(path: Path) -> str:
     try:
-        require_ending(path)
-        with path.open("rb") as file:
-            raw = file.read(MOST_BYTES + 1)
+        require_ending(path, MOST_BYTES)
+        raw = path.read_bytes()
     except IsADirectoryError:
         raise UserError(f"{path}: this is a folder; give a scenario file (YAML)") from None
     except OSError as error:
@@ -127,8 +123,6 @@ def _read(path: Path) -> str:
         raise UserError(
             f"{path}: {reason}; give the path of a scenario file (YAML){beside}"
         ) from None
-    if len(raw) > MOST_BYTES:
-        raise UserError(f"{path}: over {MOST_BYTES // 10**6} MB; give a scenario file (YAML)")
     try:
         return raw.decode("utf-8")
     except UnicodeDecodeError as error:

@@ -110,11 +110,11 @@ def test_a_torque_about_a_principal_axis_turns_faster_and_faster() -> None:
 
 
 def test_a_body_that_turns_too_fast_is_not_integrated() -> None:
-    """Spun up, or from the start: 500 rad/s are reached, 5000 are not."""
+    """Spun up, or from the start: 150 rad/s are reached, 500 are not."""
     at = lambda _: np.array([7e6, 0.0, 0.0])  # noqa: E731
     times, q0, inertia = np.array([0.0, 1.0]), np.array([1.0, 0, 0, 0]), np.diag([2.0, 2.0, 1.0])
-    _, rate = tumble(times, q0, np.zeros(3), inertia, at, np.array([0.0, 0.0, 500.0]))
-    assert rate[-1, 2] == pytest.approx(500.0)
-    for start, torque in ((0.0, 5000.0), (5000.0, 0.0)):
-        with pytest.raises(ValueError, match="faster than 1000 rad/s"):
+    _, rate = tumble(times, q0, np.zeros(3), inertia, at, np.array([0.0, 0.0, 150.0]))
+    assert rate[-1, 2] == pytest.approx(150.0)
+    for start, torque in ((0.0, 500.0), (500.0, 0.0)):
+        with pytest.raises(ValueError, match="faster than 200 rad/s"):
             tumble(times, q0, np.array([0, 0, start]), inertia, at, np.array([0, 0, torque]))

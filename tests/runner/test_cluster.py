@@ -1,6 +1,9 @@
 """A cluster proves itself before it computes, and what it reports to be done is read back."""
 
 import asyncio
+import os
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -43,6 +46,19 @@ class Client:
         return Future()
 
 
+def test_what_is_imported_counts_not_what_a_list_of_packages_says(tmp_path: Path) -> None:
+    """A numpy of another version that PYTHONPATH puts before the installed one has no metadata."""
+    (tmp_path / "numpy.py").write_text("__version__ = '1.0'\n")
+    told = "import debrisest.runner.fingerprint as f; f._BELOW = ('numpy',); print(f.fingerprint())"
+    found = subprocess.run(
+        [sys.executable, "-c", told],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])},
+        capture_output=True,
+        text=True,
+    )
+    assert "'numpy': '1.0'" in found.stdout, found.stderr
+
+
 OLD = fingerprint() | {"debrisest": "0" * 16}
 
 
@@ -51,6 +67,8 @@ OLD = fingerprint() | {"debrisest": "0" * 16}
     [
         ({}, ["no worker joined", "within 30 s", "dask worker tcp://x"]),
         ({"a": None, "b": OLD}, ["worker b: debrisest 0000", "expected", "install the same"]),
+        ({"a": fingerprint() | {"numpy": "1.0"}}, ["worker a: numpy 1.0", "(expected", "same"]),
+        ({"a": fingerprint() | {"python": "3.12.1"}, "b": None}, ["worker a: python 3.12.1"]),
         ({"a": ModuleNotFoundError("No module")}, ["worker a", "no debrisest like this one"]),
     ],
 )

@@ -1,5 +1,6 @@
 """Names and texts that later stages cannot carry are refused with their place and the reason."""
 
+import json
 import os
 import zlib
 from pathlib import Path
@@ -95,6 +96,23 @@ def test_devices_and_endless_files_are_no_scenarios(tmp_path: Path, cli: Any) ->
         assert (result.exit_code, why in result.stderr) == (2, True)
 
 
+@pytest.mark.parametrize("kind", ["sparse", "zero", "pipe"])
+def test_published_values_of_any_length_and_none_are_refused_at_once(
+    kind: str, small: Path, cli: Any
+) -> None:
+    path = small.with_suffix(".csv")
+    path.unlink()
+    if kind == "sparse":
+        with path.open("wb") as file:
+            file.truncate(2**40)
+    elif kind == "zero":
+        path.symlink_to("/dev/zero")
+    else:
+        os.mkfifo(path)
+    result = cli("validate", small)
+    assert (result.exit_code, "published values cannot be read" in result.stderr) == (2, True)
+
+
 def test_a_pipe_that_nobody_writes_to_is_no_scenario(tmp_path: Path, cli: Any) -> None:
     os.mkfifo(pipe := tmp_path / "pipe.yaml")
     result = cli("validate", pipe)
@@ -120,6 +138,14 @@ def test_accents_in_one_sign_or_two_tell_no_scenarios_and_no_features_apart(
     assert (result.exit_code, "two features have one name" in result.stderr) == (2, True)
 
 
+@pytest.mark.parametrize("name", ["a\tb", "a\nb", " ", ""])
+def test_features_have_names_that_figures_can_show(name: str, small: Path, cli: Any) -> None:
+    text = small.read_text().replace("    b: {position", f"    {json.dumps(name)}: {{position")
+    small.write_text(text)
+    result = cli("validate", small)
+    assert (result.exit_code, "is no name" in result.stderr) == (2, True)
+
+
 def test_texts_beyond_the_basic_plane_are_texts(small: Path) -> None:
     import debrisest
 
@@ -129,6 +155,7 @@ def test_texts_beyond_the_basic_plane_are_texts(small: Path) -> None:
 def test_what_is_told_has_no_control_characters() -> None:
     (told,) = UserError("--case \x1b[2J\ud800").problems
     assert told == "--case \\x1b[2J\\ud800"
+    assert UserError("a\u3164\u034f").problems == ["a\\u3164\\u034f"]
     assert UserError("a\u200eb\U000e0041\r\n\tc").problems == ["a\\u200eb\\U000e0041\\r\n\tc"]
 
 

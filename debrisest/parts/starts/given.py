@@ -10,7 +10,7 @@ from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.errors import allowed_names
-from debrisest.files import require_ending
+from debrisest.files import MOST_BYTES, require_ending
 from debrisest.roles import Keys, NonNegative, SimulationPart
 from debrisest.vocabulary import AXIS_LENGTH, VOCABULARY, possible_units, table_scale
 
@@ -121,7 +121,7 @@ def _read(path: Path) -> dict[str, Any]:
     import pandas as pd
 
     try:
-        require_ending(path)
+        require_ending(path, MOST_BYTES)
         table = pd.read_csv(path, dtype={"name": str})
     except OSError as error:
         raise ValueError(f"{path}: {error.strerror or 'cannot be read'}") from None

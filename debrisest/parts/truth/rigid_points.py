@@ -81,6 +81,8 @@ class Feature(Keys):
 def _at_least_three(points: dict[str, Feature]) -> dict[str, Feature]:
     if len(points) < 3:
         raise ValueError(f"an attitude needs at least three features, found {len(points)}")
+    if odd := [name for name in points if not (name.strip() and name.isprintable())]:
+        raise ValueError(f"{odd[0]!r} is no name: it is empty, or has a tab or an end of a line")
     if len({normalize("NFC", name) for name in points}) < len(points):
         raise ValueError("two features have one name, with an accent as a sign of its own in one")
     first = np.array([feature.position_m for feature in list(points.values())[:3]])

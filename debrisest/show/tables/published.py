@@ -16,7 +16,7 @@ import pandas as pd
 
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.errors import UserError, allowed_names, meant
-from debrisest.files import require_ending
+from debrisest.files import MOST_BYTES, require_ending
 from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.window import window_of
@@ -123,7 +123,7 @@ def _estimator(column: str) -> bool:
 def _read(path: Path) -> list[tuple[int, list[str]]]:
     """Return the rows that are not empty, with their lines."""
     try:
-        require_ending(path)
+        require_ending(path, MOST_BYTES)
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = csv.reader(file)
             return [(rows.line_num, row) for row in rows if row]
