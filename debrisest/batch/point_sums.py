@@ -11,7 +11,6 @@ from typing import Self
 
 import numpy as np
 
-from debrisest import compiled
 from debrisest.arrays import Array, BoolArray
 from debrisest.attitude import quaternion
 from debrisest.batch.arc import Course
@@ -70,10 +69,6 @@ class KnownPoints:
 
     def normal(self, course: Course) -> Normal:
         """Return the normal equations at the motion."""
-        if compiled.available():
-            from debrisest.batch.point_sums_loops import normal
-
-            return Normal(*normal(course.q, course.turn_by, *self.sums))
         return summed(self.told(course.q, course.rate), course.turn_by)
 
     def chi2(self, q: Array, rate: Array) -> float:

@@ -1,6 +1,7 @@
 """The runs of several files as if they were of one."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -10,30 +11,33 @@ from debrisest.arrays import Data
 from debrisest.vocabulary import has_runs
 
 
-def joined(parts: Sequence[Data]) -> Data:
-    """Return all runs of ``parts``, in this order.
+def joined(parts: Iterable[Data], runs: Sequence[int]) -> Data:
+    """Return all runs of ``parts``, in this order; ``runs`` says how many each of them has.
 
-    Where a part has not got a dataset, since all its runs failed, or its axes are shorter than
-    those of others, there is NaN (in texts, nothing).
+    One part is held at a time. Where one has not got a dataset, since all its runs failed, or its
+    axes are shorter than those of others, there is NaN (in texts, nothing).
     """
-    names = dict.fromkeys(name for part in parts for name in part)
-    return {name: _joined(name, parts) for name in names}
+    if len(runs) == 1:
+        return next(iter(parts))
+    whole: Data = {}
+    for part, first in zip(parts, accumulate(runs, initial=0)):
+        for name, values in part.items():
+            if has_runs(name):
+                whole[name] = _room(whole.get(name, values[:0]), values, sum(runs))
+                inside = (slice(first, first + len(values)), *map(slice, values.shape[1:]))
+                whole[name][inside] = values
+            else:
+                whole.setdefault(name, values)
+    return whole
 
 
-def _joined(name: str, parts: Sequence[Data]) -> NDArray[Any]:
-    given = [part[name] for part in parts if name in part]
-    if not has_runs(name) or len(parts) == 1:
-        return given[0]
-    shape = np.max([values.shape[1:] for values in given], axis=0).astype(int)
-    return np.concatenate(
-        [_padded(part.get(name, given[0][:0]), len(part["run"]), shape) for part in parts]
-    )
-
-
-def _padded(values: NDArray[Any], runs: int, shape: NDArray[np.int64]) -> NDArray[Any]:
-    wanted = (runs, *shape.tolist())
-    if values.shape == wanted:
-        return values
-    padded = np.full(wanted, "" if values.dtype.kind in "US" else np.nan, values.dtype)
-    padded[tuple(map(slice, values.shape))] = values
-    return padded
+def _room(found: NDArray[Any], values: NDArray[Any], runs: int) -> NDArray[Any]:
+    """Return what was found, with room for all runs and for values like these."""
+    axes = np.maximum(found.shape[1:], values.shape[1:]).astype(int).tolist()
+    kind = np.result_type(found, values)
+    if found.shape == (runs, *axes) and found.dtype == kind:
+        return found
+    nothing = {"f": np.nan, "U": ""}.get(kind.kind, 0)
+    larger = np.full((runs, *axes), nothing, kind)
+    larger[tuple(map(slice, found.shape))] = found
+    return larger

@@ -94,7 +94,8 @@ class Results:
             for chunk in self._chosen(case, estimator, stage)
             if chunk.address.first_run < most
         ]
-        return joined([chunk.read(names, runs=last) for chunk, last in wanted])
+        counts = [min(chunk.runs, last) for chunk, last in wanted]
+        return joined((chunk.read(names, runs=last) for chunk, last in wanted), counts)
 
     def dataset(self, case: str, estimator: str = "", stage: str = "") -> "xarray.Dataset":
         """Return what ``load`` does as an xarray Dataset with coordinates, units and names."""

@@ -6,8 +6,6 @@ import pytest
 from debrisest import compiled
 from debrisest.batch import arc as arcs
 from debrisest.batch.arc import Arc, along, course
-from debrisest.batch.point_sums import KnownPoints
-from debrisest.batch.tracks import tracks
 
 pytest.importorskip("numba")
 
@@ -73,14 +71,3 @@ def test_without_numba_numpy_does_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(arcs.compiled, "available", lambda: False)
     monkeypatch.setattr(arcs, "_along_compiled", None)
     assert np.isfinite(along(drawn(2, 0.3), TIMES)[0]).all()
-
-
-def test_normal_equations_of_points_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    draws = np.random.default_rng(5)
-    arc, model = drawn(1, 0.3), draws.normal(size=(6, 3))
-    arc = Arc(arc.epoch, *(part[0] for part in arc[1:]))
-    points = draws.normal(size=(len(TIMES), 6, 3))
-    points[draws.random(points.shape[:2]) < 0.3] = np.nan
-    evidence = KnownPoints(tracks(TIMES, points, 0.1), model)
-    for fast, slow in zip(*both(monkeypatch, evidence.normal, course(arc, TIMES))):
-        np.testing.assert_allclose(fast, slow, atol=1e-12 * np.abs(slow).max())

@@ -1,0 +1,85 @@
+"""CPU time of numpy's code over that of the loops that numba compiles, in turns in one process.
+
+Usage: python scripts/benchmark_kernels.py [ROUNDS]    (needs the extra [fast])
+
+Kernels are called as an estimator calls them: what is left around the loops counts. `benchmark.py`
+holds whole filters against their peers.
+"""
+
+import sys
+import time
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+from rich.box import MARKDOWN
+from rich.console import Console
+from rich.table import Table
+
+from debrisest import compiled
+from debrisest.batch.arc import Arc, course
+from debrisest.dynamics.log_inertia import log_ratios
+from debrisest.problems.camera_range import model as camera_range
+
+RATE, MOMENTS = np.radians([7.2, 5.525, -1.624]), np.array([0.618, 0.707, 0.345])
+IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
+CALLS = 10
+
+Kernel = Callable[[], Any]
+
+
+def kernels() -> dict[str, Kernel]:
+    """Return what the loops replace, by name."""
+    arc = Arc(300.0, IDENTITY, RATE, log_ratios(np.diag(MOMENTS)))
+    times = {count: np.arange(float(count)) for count in (10, 300, 1500)}
+    core = np.zeros((20, camera_range.LOG_INERTIA.stop))
+    core[:, camera_range.Q], core[:, camera_range.RATE] = IDENTITY, 0.2 * RATE
+    core[:, camera_range.LOG_INERTIA] = arc.log_inertia
+    orbit: Any = SimpleNamespace(mean_motion=1e-3, step=1.0, gravity_gradient=True)
+    return {
+        **{
+            f"motion and derivatives of an arc, {count} epochs": lambda t=t: course(arc, t)
+            for count, t in times.items()
+        },
+        "rotation in orbit and derivatives, 20 runs of 1165 epochs": lambda: camera_range._rotation(
+            orbit, core, 1165, 1
+        ),
+        "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
+    }
+
+
+def compared(kernel: Kernel, rounds: int) -> tuple[list[float], list[float], float]:
+    """Return microseconds per call of numpy and of the loops, by round, and how far they differ."""
+
+    def by(loops: bool) -> Any:
+        with patch.object(compiled, "available", lambda: loops):
+            return kernel()
+
+    def cost(loops: bool) -> float:
+        before = time.process_time()
+        for _ in range(CALLS):
+            by(loops)
+        return 1e6 * (time.process_time() - before) / CALLS
+
+    gap = max(np.abs(a - b).max() / np.abs(a).max() for a, b in zip(by(False), by(True)))
+    plain, fast = zip(*((cost(False), cost(True)) for _ in range(rounds)))
+    return list(plain), list(fast), float(gap)
+
+
+def main(rounds: int = 5) -> None:
+    """Print one row per kernel: medians, and the ratios' range over the rounds."""
+    table = Table("kernel", "numpy, us", "loops, us", "ratio (range)", "agree to", box=MARKDOWN)
+    for name, kernel in kernels().items():
+        plain, fast, gap = compared(kernel, rounds)
+        ratios = np.array(plain) / fast
+        spread = f"{np.median(ratios):.2g} ({ratios.min():.2g}-{ratios.max():.2g})"
+        table.add_row(
+            name, f"{np.median(plain):.0f}", f"{np.median(fast):.0f}", spread, f"{gap:.0e}"
+        )
+    Console(width=120).print(table)
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:2]))
