@@ -53,9 +53,11 @@ def bootstrap(statistic: str, figures: NDArray[Any], rng: np.random.Generator) -
     return np.asarray(np.quantile(over_runs(statistic, drawn), (0.025, 0.975)))
 
 
-def coverage(statistic: str, law: Any, runs: int, trials: int) -> tuple[float, float]:
+def coverage(
+    statistic: str, law: Any, runs: int, trials: int, seed: int = SEED
+) -> tuple[float, float]:
     """Return the shares of samples whose bootstrap, and whose interval, holds the truth."""
-    rng = np.random.default_rng((SEED, runs))
+    rng = np.random.default_rng((seed, runs))
     samples = law.rvs(size=(trials, runs), random_state=rng)
     before = np.array([bootstrap(statistic, sample, rng) for sample in samples])
     name = {"mean": "rmse"}.get(statistic, statistic)
