@@ -40,8 +40,9 @@ def png(figure: Figure, dpi: int, shaded: bool = False) -> bytes:
 
 @cache
 def _palette() -> Image.Image:
-    colours = [to_rgb(colour) for colour in ("white", GRID, SHADE, INK, GREY, *ESTIMATOR_COLOURS)]
-    tints = [1 - weight * (1 - np.array(colours)) for weight in np.linspace(1, _LIGHTEST, _TINTS)]
+    lines = np.array([to_rgb(colour) for colour in (INK, GREY, *ESTIMATOR_COLOURS)])
+    tints = [1 - weight * (1 - lines) for weight in np.linspace(1, _LIGHTEST, _TINTS)]
+    plain = [to_rgb(colour) for colour in ("white", GRID, SHADE)]
     palette = Image.new("P", (1, 1))
-    palette.putpalette(np.rint(255 * np.concatenate(tints)).astype(int).ravel().tolist())
+    palette.putpalette(np.rint(255 * np.concatenate([plain, *tints])).astype(int).ravel().tolist())
     return palette
