@@ -86,6 +86,14 @@ def test_settings_are_python_values(small: Path) -> None:
     assert changed.common.motion.rate_deg_s == [1e-7, 2, 3]
 
 
+def test_settings_make_a_variant_as_those_of_the_command_do(small: Path) -> None:
+    assert debrisest.load(small).name == "small"
+    assert debrisest.load(small, seed=8, runs=2).name == "small@runs=2,seed=8"
+    assert debrisest.load(small, variant="mine", seed=8).name == "small@mine"
+    with pytest.raises(debrisest.UserError, match="--variant a b: a name has letters"):
+        debrisest.load(small, variant="a b")
+
+
 def test_a_name_that_nothing_has(tmp_path: Path, small: Path) -> None:
     with pytest.raises(debrisest.UserError, match="did you mean first_steps"):
         debrisest.load("first_step")

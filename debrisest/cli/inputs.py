@@ -1,6 +1,6 @@
 """From arguments and options to what the runner takes."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -87,3 +87,20 @@ def select(
     selection = Selection(runs, cases or None, estimators or None, last_stage, force)
     check_selection(scenarios, selection)
     return selection
+
+
+def named(
+    scenarios: Sequence["LoadedScenario"], out: Path, settings: Sequence[str]
+) -> Iterator[str]:
+    """Yield the arguments by which a command finds the results of these scenarios."""
+    from debrisest.cli.options import RESULTS
+    from debrisest.scenario.variant import variant_of
+    from debrisest.shipped import is_shipped
+
+    for one in scenarios:
+        yield one.path.stem if is_shipped(one.path) else str(one.path)
+    yield from (text for setting in settings for text in ("--set", setting))
+    if (variant := scenarios[0].variant) != variant_of(settings):
+        yield from ("--variant", variant)
+    if out != RESULTS:
+        yield from ("--out", str(out))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from typer import Option
 
-from debrisest.cli.inputs import load_all, select
+from debrisest.cli.inputs import load_all, named, select
 from debrisest.cli.options import (
     RESULTS,
     CaseNames,
@@ -93,7 +93,7 @@ def write_report(
         else:
             print(f"left out of the report: {scenario.name}: no results", file=sys.stderr)
     if not chapters:
-        names = " ".join(str(scenario.path) for scenario in scenarios)
+        names = shlex.join(named(scenarios, out, settings))
         raise UserError(f"no results that are up to date; run: debrisest sweep {names}")
     alone = [chapter.name for chapter in chapters if len(scenarios) == 1]
     path = to or Path(out, *alone, "report.html")
@@ -126,21 +126,8 @@ def _chapter(
     rows, _ = tabulate(scenario, out, wanted)
     asked = partial(selection.asks_for, means=scenario.common.tables.means)
     drawn = () if figures_of is None else _pictures(scenario, out, selection, figures_of)
-    command = shlex.join(_named(scenario, out, settings))
+    command = shlex.join(named([scenario], out, settings))
     return chapter(scenario, command, results, steps, chosen(rows, asked), settings, drawn)
-
-
-def _named(scenario: "LoadedScenario", out: Path, settings: Sequence[str]) -> Iterator[str]:
-    """Yield the arguments by which a command finds the same results."""
-    from debrisest.scenario.variant import variant_of
-    from debrisest.shipped import is_shipped
-
-    yield scenario.path.stem if is_shipped(scenario.path) else str(scenario.path)
-    yield from (text for setting in settings for text in ("--set", setting))
-    if scenario.variant != variant_of(settings):
-        yield from ("--variant", scenario.variant)
-    if out != RESULTS:
-        yield from ("--out", str(out))
 
 
 def _pictures(

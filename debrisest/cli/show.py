@@ -1,5 +1,6 @@
 """The commands that show results: table, plot, status."""
 
+import shlex
 import sys
 from collections.abc import Sequence
 from enum import StrEnum
@@ -11,7 +12,7 @@ from typer import Option
 
 from debrisest.cli.estimates import estimates_of
 from debrisest.cli.exits import exit_if
-from debrisest.cli.inputs import load_all, select
+from debrisest.cli.inputs import load_all, named, select
 from debrisest.cli.options import (
     RESULTS,
     CaseNames,
@@ -70,8 +71,12 @@ def table(
     selection = select(scenarios, runs, case, estimator)
     wrong = show_tables(scenarios, out, selection, None if quiet else form, check)
     for scenario in scenarios:
-        if scenario.variant:
+        if scenario.variant and (out / scenario.name / "tables.csv").is_file():
             print(f"these tables are of {out / scenario.name}", file=sys.stderr)
+        elif scenario.variant:
+            words = shlex.join(named([scenario], out, settings or ()))
+            told = f"{out / scenario.name}: there is no such variant"
+            print(f"{told}; run: debrisest sweep {words}", file=sys.stderr)
         elif names := _variants(scenario, out):
             told = f"{scenario.path}: there are variants too: {' '.join(names)}; show one with"
             print(f"{told} the --set and --variant that it was made with", file=sys.stderr)

@@ -143,7 +143,10 @@ def _drawn(folder: Path, images: "ImageSequence", found: "Tracked", times: "Arra
     first, shown = images.frames[:, 0], found.shown[:, 0]
     most = int(np.isfinite(shown[10:, :, 0]).sum(axis=1).argmax()) + 10 if len(shown) > 10 else -1
     over = tracks_over_image(first, shown, most % len(shown))
-    return [*write(over, folder, "tracks"), *write(strip(first, shown, times), folder, "strip")]
+    return [
+        *write(over, folder, "tracks", shaded=True),
+        *write(strip(first, shown, times), folder, "strip", shaded=True),
+    ]
 
 
 def _tell_next(tracks: Path, rig: "Rig | None", pair: bool) -> None:

@@ -52,7 +52,8 @@ def draw_all(
         called = "-".join((name, *source.names))
         drawn = True
         with collected_after():
-            paths = list(write(draw(name, source), folder, called, asked.formats))
+            shaded = FIGURES[name].shaded
+            paths = list(write(draw(name, source), folder, called, asked.formats, shaded))
         yield from paths
     if FILM in asked.figures:
         for source in tumbles(scenario, up_to_date(find_results(out / scenario.name), wanted)):

@@ -32,7 +32,8 @@ ONE_PANEL = ["table", "quantity", "unit", "statistic", "window"]
 def error_over_value(data: Data, context: str) -> Figure:
     """Draw ``measured (cell,)`` over ``value (cell,)``, a panel a quantity, a line an estimator.
 
-    Bands are the 95 % intervals, bounds are dashed, published values are marks.
+    Bands are the 95 % intervals, as far as samples give them; bounds are dashed, published values
+    are marks.
     """
     cells = pd.DataFrame({name: data[name] for name in COLUMNS})
     key, panels = str(cells["key"].iloc[0]), list(cells.groupby(ONE_PANEL, sort=False))
@@ -59,7 +60,8 @@ def _panel(axis: Axes, cells: pd.DataFrame, looks: dict[str, dict[str, Any]]) ->
     for estimator, mine in cells.groupby("estimator", sort=False):
         look = looks[str(estimator)]
         axis.plot(mine["value"], mine["measured"], marker="o", markersize=3.0, **look)
-        value, low, high = mine[["value", "ci_low", "ci_high"]].to_numpy(float).T
+        value, at, *ends = mine[["value", "measured", "ci_low", "ci_high"]].to_numpy(float).T
+        low, high = (np.where(np.isfinite(end), end, at) for end in ends)
         axis.fill_between(value, low, high, color=look["color"], alpha=0.18, linewidth=0)
     known = cells.dropna(subset="published").drop_duplicates("value")
     axis.plot(known["value"], known["published"], **_PUBLISHED)

@@ -1,7 +1,6 @@
 """Figures on disk, as PNG, SVG or PDF."""
 
 from collections.abc import Iterator, Sequence
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -9,15 +8,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from debrisest.files import replacing
+from debrisest.show.plots.png import png
 from debrisest.show.plots.room import make_room
 from debrisest.show.plots.style import style
 
-FORMATS: dict[str, dict[str, Any]] = {
-    "png": {"dpi": 150, "metadata": {"Software": None}, "pil_kwargs": {"compress_level": 4}},
+DRAWN: dict[str, dict[str, Any]] = {
     "svg": {"dpi": 200, "metadata": {"Date": None}},
     "pdf": {"dpi": 300, "metadata": {"CreationDate": None}},
 }
 """In an SVG or a PDF only what is dense has a resolution."""
+_DPI = 150
+"""Of a PNG."""
 USUAL = ("png", "svg")
 MOST_MARKERS, MOST_VERTICES = 300, 2000
 """What has more of them is drawn as an image, which keeps an SVG below about 1 MB."""
@@ -26,23 +27,23 @@ _NO_MARKER = (None, "None", "none", " ", "")
 
 
 def write(
-    figure: Figure, folder: Path, name: str, formats: Sequence[str] = USUAL
+    figure: Figure, folder: Path, name: str, formats: Sequence[str] = USUAL, shaded: bool = False
 ) -> Iterator[Path]:
-    """Write a figure in some FORMATS, each in one step; yield the paths."""
+    """Write a figure as PNG, SVG or PDF, each in one step; yield the paths.
+
+    ``shaded``: it has other colours than those of the style.
+    """
     _rasterise_dense(figure)
-    with style():
-        make_room(figure)
+    make_room(figure)
     for form in formats:
         path = folder / f"{name}.{form}"
         with replacing(path) as temporary:
-            save(figure, temporary, form, **FORMATS[form])
+            if form == "png":
+                temporary.write_bytes(png(figure, _DPI, shaded))
+            else:
+                with style():
+                    figure.savefig(temporary, format=form, **DRAWN[form])
         yield path
-
-
-def save(figure: Figure, target: Path | BytesIO, form: str, **options: Any) -> None:
-    """Write a figure that has room for all it shows."""
-    with style():
-        figure.savefig(target, format=form, **options)
 
 
 def _rasterise_dense(figure: Figure) -> None:

@@ -72,6 +72,8 @@ _FIRST_POINT = {
     "first_point_c_error": "first point, camera",
 }
 DATASETS = tuple(dict.fromkeys(group.error for group in _GROUPS))
+_UNDER_LABEL = 1.25
+"""Room above what has one sign, so that it stays below its label."""
 _SETTLED = 0.1
 """Part of the time, at the start, that the limits of the axes do not follow."""
 
@@ -102,7 +104,8 @@ def _group(row: list[Axes], group: _Group, data: Data) -> None:
     for axis in row[len(group.labels) :]:
         axis.set_visible(False)
     limit = _limit(data["time_s"], error, bound)
-    row[0].set_ylim(-limit if np.any(error < 0) or sigma is not None else 0.0, limit)
+    both = bool(np.any(error < 0)) or sigma is not None
+    row[0].set_ylim(*((-limit, limit) if both else (0.0, _UNDER_LABEL * limit)))
     row[0].locator_params(axis="y", nbins=5)
     shown = unit(group.quantity)
     name = _FIRST_POINT.get(group.error, group.quantity)

@@ -16,6 +16,7 @@ from matplotlib.text import Text
 from matplotlib.transforms import Bbox, offset_copy
 
 from debrisest.arrays import Array
+from debrisest.show.plots.style import style
 
 _PAD = 0.06
 """Between what belongs to different axes, and at the figure's border, inches."""
@@ -38,13 +39,12 @@ def make_room(figure: Figure) -> None:
     canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     shown = [axes for axes in figure.axes if axes.get_visible()]
-    if not shown:
-        return
     before: list[list[float]] = []
-    for _ in range(2):  # other sizes may have other ticks
-        if (ticks := [_ticks(axes) for axes in shown]) != before:
-            _place(figure, [_part(axes, renderer) for axes in shown], renderer)
-        before = ticks
+    with style():
+        for _ in range(2):  # other sizes may have other ticks
+            if (ticks := [_ticks(axes) for axes in shown]) != before:
+                _place(figure, [_part(axes, renderer) for axes in shown], renderer)
+            before = ticks
 
 
 def _ticks(axes: Axes) -> list[float]:

@@ -15,15 +15,15 @@ from debrisest.files import put
 from debrisest.results.results import Results
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.axes import heading
-from debrisest.show.plots.files import save
 from debrisest.show.plots.gather import Source, single_runs
+from debrisest.show.plots.png import picture
 from debrisest.show.plots.room import make_room
 from debrisest.show.plots.space import same_scale, spatial_axes
 from debrisest.show.plots.style import BLUE, GREY, VERMILION, style
 
 DATASETS = ("true_point_b", "true_q_ib", "q_if")
 FRAMES = 60
-_DPI, _SIZE, _MILLISECONDS, _COLOURS = 80, 5.0, 120, 96
+_DPI, _SIZE, _MILLISECONDS = 80, 5.0, 120
 _RAYS: dict[str, Any] = {"color": GREY, "linewidth": 0.5}
 _TRUE: dict[str, Any] = {"linestyle": "", "marker": "o", "color": BLUE, "markerfacecolor": "none"}
 _ESTIMATED: dict[str, Any] = {"linestyle": "", "marker": "x", "color": VERMILION}
@@ -59,8 +59,6 @@ def write_tumble(source: Source, folder: Path) -> Path:
 
 
 def _frames(data: Data, context: str) -> Iterator[Any]:
-    from PIL import Image
-
     (true, estimated), times = places(data), data["time_s"]
     figure = Figure(figsize=(_SIZE, _SIZE))
     top, axes = spatial_axes(figure, ("x", "y", "z"))
@@ -75,6 +73,4 @@ def _frames(data: Data, context: str) -> Iterator[Any]:
         for line, points in zip(lines, (spokes, true[epoch], estimated[epoch])):
             line.set_data_3d(*points.T)
         time.set_text(f"{times[epoch]:g} s")
-        drawn = BytesIO()
-        save(figure, drawn, "png", dpi=_DPI)
-        yield Image.open(drawn).convert("RGB").quantize(_COLOURS)
+        yield picture(figure, _DPI)

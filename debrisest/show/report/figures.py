@@ -2,35 +2,19 @@
 
 from base64 import b64encode
 from collections.abc import Iterator, Sequence
-from functools import cache
-from io import BytesIO
 from pathlib import Path
-from typing import Any, NamedTuple
-
-import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
-from PIL import Image
+from typing import NamedTuple
 
 from debrisest.results.status import Wanted
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.draw import draw, sources
 from debrisest.show.plots.gather import Source
 from debrisest.show.plots.kinds import FIGURES, Kind
+from debrisest.show.plots.png import png
 from debrisest.show.plots.room import make_room
-from debrisest.show.plots.style import (
-    ESTIMATOR_COLOURS,
-    GREY,
-    GRID,
-    INK,
-    SHADE,
-    collected_after,
-    style,
-)
+from debrisest.show.plots.style import collected_after
 
-_DPI, _TINTS = 90, 15
-_EXACT = Image.Dither.NONE
+_DPI = 90
 
 
 class Picture(NamedTuple):
@@ -55,7 +39,11 @@ def pictures(
             continue
         seen.add(of)
         with collected_after():
-            address = _address(draw(kind, source), FIGURES[kind].shaded)
+            figure = draw(kind, source)
+            make_room(figure)
+            content = png(figure, _DPI, FIGURES[kind].shaded)
+            del figure
+        address = "data:image/png;base64," + b64encode(content).decode()
         yield Picture(kind, source.context, address)
 
 
@@ -64,26 +52,3 @@ def _told_apart(kind: Kind, source: Source) -> tuple[str, ...]:
     if kind.of_simulation or kind.of_estimators:
         return ()
     return source.names if kind.of_tables else source.names[-1:]
-
-
-def _address(figure: Figure, shaded: bool) -> str:
-    """Return a figure as a PNG of few colours, which is a third as large."""
-    with style():
-        make_room(figure)
-        figure.set_dpi(_DPI)
-        canvas: Any = FigureCanvasAgg(figure)
-        canvas.draw()
-    drawn, small = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB"), BytesIO()
-    few = drawn.quantize() if shaded else drawn.quantize(palette=_palette(), dither=_EXACT)
-    few.save(small, "png", compress_level=7)
-    return "data:image/png;base64," + b64encode(small.getvalue()).decode()
-
-
-@cache
-def _palette() -> Image.Image:
-    """Return the colours of the style and their tints, which are faster found than fitting ones."""
-    colours = [to_rgb(colour) for colour in ("white", GRID, SHADE, INK, GREY, *ESTIMATOR_COLOURS)]
-    tints = [1 - weight * (1 - np.array(colours)) for weight in np.linspace(1, 0.08, _TINTS)]
-    palette = Image.new("P", (1, 1))
-    palette.putpalette(np.rint(255 * np.concatenate(tints)).astype(int).ravel().tolist())
-    return palette

@@ -108,6 +108,19 @@ def test_figures_are_in_the_file(small_report: str) -> None:
         )
 
 
+def test_figures_of_another_case_can_be_asked_for(
+    small: Path, reference: Path, tmp_path: Path, cli: Callable
+) -> None:
+    to, asked = tmp_path / "page.html", ("--estimator", "triad", "--figures-of")
+    assert cli("report", small, "--out", reference, "--to", to, *asked, "fast").exit_code == 0
+    told = [one.get("alt", "") for one in tree(to.read_text(encoding="utf-8")).iter("img")]
+    assert len(told) > 4 and not any("case slow" in words for words in told)
+    command = f"debrisest report {small} --out {reference} --figures-of CASE"
+    assert command in [words(one) for one in tree(to.read_text(encoding="utf-8")).iter("code")]
+    done = cli("report", small, "--out", reference, *asked, "fats")
+    assert done.exit_code == 2 and "(did you mean fast?)" in done.stderr
+
+
 def test_the_provenance_is_told(small_report: str) -> None:
     told = {
         words(dt): words(dd) for dt, dd in zip(*(tree(small_report).iter(t) for t in ("dt", "dd")))

@@ -93,3 +93,15 @@ def test_tables_that_replace_others_are_told(
     for odd in ("[]", "[" * 99999, '{"settings": 3}', "\0"):
         (swept / "small" / "tables.origin.json").write_text(odd)
         assert "replace" not in cli("table", small, "--out", swept).stderr
+
+
+def test_a_variant_that_is_not_there_is_told_with_the_command_that_makes_it(
+    small: Path, swept: Path, cli: Callable
+) -> None:
+    for variant in ((), ("--variant", "mine")):
+        asked = (small, "--set", "seed=9", *variant, "--out", swept)
+        words = " ".join(map(str, asked))
+        name = "small@mine" if variant else "small@seed=9"
+        told = cli("table", *asked).stderr
+        assert f"{swept / name}: there is no such variant; run: debrisest sweep {words}" in told
+        assert cli("report", *asked).stderr.endswith(f"run: debrisest sweep {words}\n")
