@@ -82,13 +82,14 @@ def reconstructed_body(
     ``known_length`` is the longest distance between two points of the body, and its 1-sigma: it
     replaces the scale of the structure. Raises ValueError where no closed surface comes out.
     """
-    support = support_of(structure) if outline == "either" else None
+    whole = structure
+    support = support_of(whole) if outline == "either" else None
     if support is not None:
-        structure = structure.of(support.below(structure.points) < 0.0)
+        structure = whole.of(support.below(whole.points) < 0.0)
     masks, held, by_cloud = _outlined(frames, readings, rig, structure, outline)
     structure = structure.of(held)
     outer = _Outer(masks[:, 0], rig.matrix[0], structure, support)
-    views = depth_views(frames, masks, rig, structure)
+    views = depth_views(frames, masks, rig, structure if support is None else whole)
     extent = float(np.ptp(structure.points, axis=0).max())
     cells = [extent / count for count in _CELLS]
     cloud = _cloud(views, outer, cells[0])
