@@ -22,7 +22,7 @@ from debrisest.reconstruction.outlines import main_part, outlines
 from debrisest.reconstruction.poisson import poisson_mesh
 from debrisest.reconstruction.silhouettes import Frames
 from debrisest.reconstruction.structure import Rig, Structure
-from debrisest.reconstruction.turntable import Table, support_of, table_under
+from debrisest.reconstruction.turntable import Table, lowered, support_of, table_under
 from debrisest.reconstruction.winding import pieces_of
 from debrisest.vision.polyhedron import MassProperties, mass_properties
 
@@ -82,18 +82,19 @@ def reconstructed_body(
     ``known_length`` is the longest distance between two points of the body, and its 1-sigma: it
     replaces the scale of the structure. Raises ValueError where no closed surface comes out.
     """
-    support = support_of(structure) if outline == "either" else None
+    whole = structure
+    support = support_of(whole) if outline == "either" else None
     if support is not None:
-        structure = structure.of(support.below(structure.points) < 0.0)
+        structure = whole.of(support.below(whole.points) < 0.0)
     masks, held, by_cloud = _outlined(frames, readings, rig, structure, outline)
     structure = structure.of(held)
     outer = _Outer(masks[:, 0], rig.matrix[0], structure, support)
-    views = depth_views(frames, masks, rig, structure)
+    views = depth_views(frames, masks, rig, structure if support is None else whole)
     extent = float(np.ptp(structure.points, axis=0).max())
     cells = [extent / count for count in _CELLS]
     cloud = _cloud(views, outer, cells[0])
     if outline == "either" and support is None:
-        outer = outer._replace(table=table_under(cloud.points, structure))
+        outer = outer.on(table_under(cloud.points, structure))
     coarse, mesh = _SURFACES[method](views, outer, cells)
     coverage = triangles_seen(mesh, cloud, _NEAR * extent)
     share = _share_seen(mesh, coverage, outer.table, cells[1])
@@ -165,11 +166,22 @@ class _Outer(NamedTuple):
             return found
         return np.maximum(found, self.table.below(np.asarray(points, float)).astype(np.float32))
 
+    def on(self, table: Table | None) -> "_Outer":
+        """Return the same on a table, as low as the silhouettes let it be."""
+        if table is None:
+            return self
+        low = lowered(table, self.structure.points, self.outside, self.pixel)
+        return self._replace(table=low)
+
+    @property
+    def pixel(self) -> float:
+        """Return what a pixel makes at the body, m."""
+        away = self.structure.translation[self.structure.registered]
+        return float(np.median(np.linalg.norm(away, axis=1)) / self.matrix[0, 0])
+
     def holds(self, points: Array) -> BoolArray:
         """Return which points (n, 3) lie in the silhouettes, or next to them."""
-        away = self.structure.translation[self.structure.registered]
-        pixel = np.median(np.linalg.norm(away, axis=1)) / self.matrix[0, 0]
-        return np.asarray(self.outside(points) < _NEXT_PX * pixel)
+        return np.asarray(self.outside(points) < _NEXT_PX * self.pixel)
 
     def volume(self, voxel: float) -> float:
         """Return the volume of what all silhouettes share."""

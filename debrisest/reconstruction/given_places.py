@@ -3,7 +3,7 @@
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.attitude.points import wahba
+from debrisest.attitude.rotation import nearest_rotation
 from debrisest.reconstruction.structure import Structure
 
 _OFF = 0.1
@@ -24,7 +24,8 @@ def laid_onto(structure: Structure, rotation: Array, translation: Array) -> Stru
             (rotation, translation),
         )
     )
-    turn = wahba(found, given)
+    turns = np.einsum("tji,tjk->ik", rotation[placed], structure.rotation[placed])
+    turn = nearest_rotation(turns)[0]
     spread = [np.linalg.norm(each - each.mean(axis=0)) for each in (found, given)]
     scale = spread[1] / spread[0]
     shift = given.mean(axis=0) - scale * turn @ found.mean(axis=0)

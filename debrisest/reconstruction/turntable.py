@@ -5,7 +5,8 @@ a camera that looks down on it, is taken to stand on a plane at a right angle to
 the lowest points that are seen.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,8 @@ _ONE_AXIS, _TURNED = np.sin(np.radians(2.0)), np.sin(np.radians(20.0))
 _LOOKS_DOWN = np.sin(np.radians(4.0))
 _LOWEST = 0.005
 """Share of the points that lie below the base, by their errors."""
+_DEEPEST_PX, _CLOSING = 16, 0.85
+"""How far below the lowest points a base is looked for; share of their area where it closes."""
 _FITS = 3
 _LAYER, _SUPPORT, _BELOW = 0.05, 0.15, 0.05
 """A support's points: how thick they lie, of the height of all; least share; most share below."""
@@ -42,6 +45,26 @@ def table_under(points: Array, structure: Structure) -> Table | None:
     """
     up = _upwards(points, structure)
     return None if up is None else Table(up, float(np.quantile(points @ up, _LOWEST)))
+
+
+def lowered(table: Table, points: Array, outside: Callable[[Array], Any], pixel: float) -> Table:
+    """Return the table where silhouettes begin to close below the lowest points that are seen.
+
+    Depth ends some pixels within an outline, so that these points lie above the base.
+    ``outside(points)`` tells how far points (n, 3) are outside of silhouettes, ``points`` are the
+    body's, a ``pixel`` is what it makes at the body.
+    """
+    across = np.linalg.svd(table.up[None])[2][1:]
+    flat = points @ across.T
+    ranges = [np.arange(*ends, pixel) for ends in zip(flat.min(axis=0), flat.max(axis=0))]
+    level = np.stack(np.meshgrid(*ranges), axis=-1).reshape(-1, 2) @ across
+    area = [
+        np.sum(outside(level + (table.height - step * pixel) * table.up) < 0.0)
+        for step in range(_DEEPEST_PX)
+    ]
+    closing = np.flatnonzero(np.array(area) < _CLOSING * area[0])
+    steps = int(closing[0]) - 1 if len(closing) else 0
+    return table._replace(height=table.height - max(steps, 0) * pixel)
 
 
 def support_of(structure: Structure) -> Table | None:

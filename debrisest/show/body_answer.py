@@ -64,8 +64,8 @@ def _distortion(data: Data) -> str:
     bent = float(data["found_lens_distortion"][0, 0])
     sigma = float(data["found_distortion_spread"])
     if sigma > 0.0:
-        return f"k1 = {told(bent, sigma, '')}, from the images"
-    return "none, which the images do not tell apart; a lens that bends visibly needs a calibration"
+        return f"{told(bent, sigma, '')}, OpenCV's k1, from the images"
+    return "none told by the images; a lens that bends visibly needs a calibration"
 
 
 def _numbers(data: Data) -> dict[str, str]:

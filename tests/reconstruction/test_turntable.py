@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from debrisest.reconstruction.structure import Structure
-from debrisest.reconstruction.turntable import support_of, table_under
+from debrisest.reconstruction.turntable import Table, lowered, support_of, table_under
 
 MIDDLE = np.array([3.0, 0.0, 0.5])
 POINTS = MIDDLE + np.random.default_rng(1).uniform(-1, 1, (2000, 3))
@@ -71,3 +71,18 @@ def test_a_base_that_reaches_no_farther_than_the_body_or_a_tumbling_body_has_no_
     tumbling = Rotation.from_euler("zx", np.outer(np.arange(36), [10, 4]), degrees=True)
     loose = structure(tumbling)._replace(points=on_a_disc(rng) + MIDDLE)
     assert support_of(loose) is None
+
+
+def test_a_base_lies_where_silhouettes_begin_to_close_below_what_is_seen():
+    """Silhouettes of a cylinder from 25 deg above: below its base a cone is left."""
+
+    def outside(points):
+        away = np.linalg.norm(points[:, :2], axis=1)
+        below = np.maximum(-1.0 - points[:, 2], 0.0) / np.tan(np.radians(25.0))
+        return np.maximum(away + below - 0.8, points[:, 2] - 1.0)
+
+    points = np.random.default_rng(5).uniform(-0.8, 0.8, (500, 3))
+    found = lowered(Table(np.array([0.0, 0.0, 1.0]), -0.92), points, outside, 0.01)
+    assert abs(found.height + 1.0) < 0.035
+    seen_whole = lowered(Table(np.array([0.0, 0.0, 1.0]), -1.0), points, outside, 0.01)
+    assert abs(seen_whole.height + 1.0) < 0.035

@@ -9,8 +9,11 @@ from numpy.typing import NDArray
 from PIL import Image
 from typer.testing import CliRunner
 
+from debrisest.arrays import Data
+from debrisest.attitude import quaternion
 from debrisest.cli.app import app
 from debrisest.cli.reconstruct import _thinned
+from debrisest.reconstruction.mesh_files import read_mesh
 from debrisest.vision.image_files import read_images
 from tests.vision.conftest import Scene
 
@@ -23,9 +26,9 @@ Photographs = Sequence[NDArray[np.uint8]]
 
 
 @pytest.fixture(scope="module")
-def photographs(scene: Scene) -> Photographs:
-    """A box that turns before a backdrop with details that stand still."""
-    data = scene(
+def box(scene: Scene) -> Data:
+    """A box of 2 m x 1.6 m x 1.2 m that turns."""
+    return scene(
         {
             "duration_s": 14,
             "motion": {"rate_deg_s": [4.0, 8.0, 3.0]},
@@ -33,7 +36,12 @@ def photographs(scene: Scene) -> Photographs:
             "sensors": {"camera": {"baseline_m": None, "ambient": 0.6, "noise_grey": 0.5}},
         }
     )
-    frames = data["measured_image"][0, :, 0].astype(np.uint8)
+
+
+@pytest.fixture(scope="module")
+def photographs(box: Data) -> Photographs:
+    """Images of it before a backdrop with details that stand still."""
+    frames = box["measured_image"][0, :, 0].astype(np.uint8)
     spots = np.random.default_rng(7).integers(120, 200, (HEIGHT // 8, WIDTH // 8))
     backdrop = np.kron(spots, np.ones((8, 8))).astype(np.uint8)
     return [np.where(frame > 12, frame, backdrop) for frame in frames]
@@ -81,6 +89,27 @@ def test_photographs_without_a_calibration(
     assert "without a scale: only ratios" in output or "no number is told" in output
     assert "volume " not in output
     assert (tmp_path / "out" / "box" / "mesh.obj").is_file()
+
+
+def test_places_that_are_given_tell_scale_and_axes(
+    tmp_path: Path, box: Data, photographs: Photographs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("debrisest.reconstruction.body._CELLS", (24, 40))
+    folder = put(tmp_path / "box", photographs)
+    turns = quaternion.to_matrix(box["true_q_ib"][0])
+    shifts = np.broadcast_to(box["true_position"][0], (len(turns), 3))
+    known = [box["camera_matrix"][0, 0].ravel(), turns.reshape(-1, 9), shifts]
+    lines = [
+        f"p{number + 1}.jpg {' '.join(map(repr, np.concatenate(each).tolist()))}"
+        for number, each in enumerate(zip(np.tile(known[0], (len(turns), 1)), *known[1:]))
+    ]
+    (folder / "box_par.txt").write_text("\n".join([str(len(lines)), *lines]))
+    code, output = said(folder)
+    assert code == 0
+    assert "px, from the places box_par.txt" in line(output, "focal length")
+    points, _ = read_mesh(tmp_path / "out" / "box" / "cloud.ply")
+    outside = (np.abs(points) - [1.0, 0.8, 0.6]).max(axis=1)
+    assert np.quantile(np.abs(outside), 0.7) < 0.05
 
 
 def noise(count: int, height: int = 48) -> Photographs:

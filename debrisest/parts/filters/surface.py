@@ -34,7 +34,7 @@ class SurfaceStatus(Outcome):
 
     CLOSED = 0, "a closed mesh; the error bars count scale, coverage and resolution"
     NO_SCALE = 1, "a closed mesh without a scale: only ratios are told"
-    UNSEEN = 2, "too much of the body was never seen: no number is told; let it turn further"
+    UNSEEN = 2, "too much was never seen: no number is told; let it turn more, or look lower too"
 
 
 _METHODS: dict[Method, str] = {
@@ -51,6 +51,7 @@ class Surface(FilterPart):
 
     takes = "shape_model"
     makes_start = True
+    version = 2
     libraries = ("cv2", "pycolmap", "skimage")
     kind: Literal["surface"]
     method: Method = "fusion"

@@ -41,19 +41,12 @@ class ShapeModel(NamedTuple):
         """
         frames, rig = pinhole_images(self.data, run, "found_")
         try:
-            masks = readings(frames, self._chroma(run))
+            masks = readings(frames, pinhole_chroma(self.data, run, "found_"))
         except ValueError:
             if not several:
                 raise
             masks = []
         return ImagesOfBody(frames, masks, rig, structure_of(self.data, run))
-
-    def _chroma(self, run: int) -> Frames | None:
-        """Return the colours of the images without distortion, if they have any."""
-        if "measured_chroma" not in self.data:
-            return None
-        lens = (self.data[f"found_{name}"][run] for name in ("camera_matrix", "lens_distortion"))
-        return undistorted(self.data["measured_chroma"][run].astype(np.uint8), *lens)
 
 
 def seen(data: Data, run: int) -> tuple[Frames, BoolArray, Rig]:
@@ -68,6 +61,14 @@ def pinhole_images(data: Data, run: int, which: str = "") -> tuple[Frames, Rig]:
     frames = data["measured_image"][run].astype(np.uint8)
     flat = undistorted(frames, matrix, data[f"{which}lens_distortion"][run])
     return flat, Rig(matrix, data["rig_rotation"][run], data["rig_translation"][run])
+
+
+def pinhole_chroma(data: Data, run: int, which: str = "") -> Frames | None:
+    """Return the colours of images without distortion, if they have any."""
+    if "measured_chroma" not in data:
+        return None
+    lens = (data[f"{which}{name}"][run] for name in ("camera_matrix", "lens_distortion"))
+    return undistorted(data["measured_chroma"][run].astype(np.uint8), *lens)
 
 
 def structure_of(data: Data, run: int) -> Structure:
