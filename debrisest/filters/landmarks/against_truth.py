@@ -12,12 +12,14 @@ def costs(task: Problem, arc: Arc, core: Array, points: Array) -> tuple[Array, A
     """Return the costs (run,) of the solution and of the truth, and how many numbers are estimated.
 
     The truth is a ``core (run, n)`` at epoch 0 and ``points (run, N, 3)``. Both costs are those of
-    the frames without what the solution leaves out.
+    the frames without what the solution leaves out, and of the points that it tells in the end: one
+    that was seen too seldom may have been placed by a false match.
     """
     best = arc.found.best
-    placed = best.at.placed[..., None]
-    true = Unknowns(task.model.parameters(core), np.where(placed, points, 0.0), best.at.placed)
+    told = best.at.placed & arc.anchors[-1].present
+    true = Unknowns(task.model.parameters(core), np.where(told[..., None], points, 0.0), told)
     frames = np.arange(arc.anchors[-1].epoch + 1)
     known = task.model, arc.observed, best.prior
-    own, other = (cost(*known, at, frames, False).value for at in (best.at, true))
-    return own, other, task.parameters.shape[-1] + 3 * best.at.placed.sum(-1)
+    found = best.at._replace(placed=told)
+    own, other = (cost(*known, at, frames, False).value for at in (found, true))
+    return own, other, task.parameters.shape[-1] + 3 * told.sum(-1)
