@@ -13,7 +13,7 @@ from debrisest.cli.streams import steady
 from debrisest.errors import UserError, meant
 from debrisest.interrupts import SENTENCE
 
-_PLACE = re.compile(r"^[^\n]*?:(\d+):\d+(?=: )")
+_PLACE = re.compile(r"^([^\n]*?):(\d+):\d+(?=: )")
 _MOST_ALIKE = 20
 """Problems that differ in their place alone, beyond which only the first is told."""
 
@@ -53,11 +53,11 @@ def folded(problems: Sequence[str]) -> Iterator[str]:
     """Yield problems, but only the first of many that differ in their place alone."""
     alike: dict[str, list[str]] = {}
     for problem in problems:
-        alike.setdefault(_PLACE.sub("", problem), []).append(problem)
+        alike.setdefault(_PLACE.sub(r"\1", problem), []).append(problem)
     for several in alike.values():
-        if len(several) > _MOST_ALIKE:
+        if len(several) > _MOST_ALIKE and _PLACE.match(several[0]):
             yield several[0]
-            lines = [found[1] for each in several[1:] if (found := _PLACE.match(each))]
+            lines = [found[2] for each in several[1:] if (found := _PLACE.match(each))]
             yield f"  and {len(lines)} more like this, in lines {lines[0]} to {lines[-1]}"
         else:
             yield from several
