@@ -76,3 +76,18 @@ def test_pipes_and_devices_where_tables_should_go_are_not_read(
     assert (done.exit_code, done.stderr) == (0, told)
     for name in names:
         assert (swept / "small" / name).read_bytes() == (reference / "small" / name).read_bytes()
+
+
+def test_many_problems_of_one_kind_are_folded_and_others_are_not(
+    small: Path, tmp_path: Path, cli: Callable
+) -> None:
+    wrong = "".join(
+        f"  c{index}: {{sensors: {{points: {{noise_cm: {index}}}}}}}\n" for index in range(300)
+    )
+    small.write_text(small.read_text() + wrong + "  last: {run: 2}\n")
+    done = cli("validate", small)
+    first, more, last = done.stderr.splitlines()
+    assert done.exit_code == 2
+    assert "sensors.points.noise_cm: unknown key" in first and "did you mean runs?" in last
+    line = int(first.split(":")[1])
+    assert more == f"  and 299 more like this, in lines {line + 1} to {line + 299}"

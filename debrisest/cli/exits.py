@@ -3,6 +3,7 @@
 import errno
 import re
 import sys
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from typer import BadParameter
@@ -13,6 +14,9 @@ from debrisest.errors import UserError, meant
 from debrisest.interrupts import SENTENCE
 
 _NO_MEMORY = "there is not enough memory; fewer --jobs, or a part of the data, need less"
+_PLACE = re.compile(r"^([^\n]*?):(\d+):\d+(?=: )")
+_MOST_ALIKE = 20
+"""Problems that differ in their place alone, beyond which only the first is told."""
 
 
 class Commands(TyperGroup):
@@ -37,7 +41,7 @@ class Commands(TyperGroup):
             error.message = error.message.replace("Value error, ", "") + _meant(error)
             raise
         except UserError as error:
-            _stop(2, *error.problems)
+            _stop(2, *folded(error.problems))
         except OSError as error:
             if error.errno == errno.EPIPE:
                 raise
@@ -50,6 +54,20 @@ class Commands(TyperGroup):
             _stop(2, _NO_MEMORY)
         except KeyboardInterrupt as error:
             _stop(getattr(error, "exit_code", 130), SENTENCE)
+
+
+def folded(problems: Sequence[str]) -> Iterator[str]:
+    """Yield problems, but only the first of many that differ in their place alone."""
+    alike: dict[str, list[str]] = {}
+    for problem in problems:
+        alike.setdefault(_PLACE.sub(r"\1", problem), []).append(problem)
+    for several in alike.values():
+        if len(several) > _MOST_ALIKE and _PLACE.match(several[0]):
+            yield several[0]
+            lines = [found[2] for each in several[1:] if (found := _PLACE.match(each))]
+            yield f"  and {len(lines)} more like this, in lines {lines[0]} to {lines[-1]}"
+        else:
+            yield from several
 
 
 def exit_if(wrong: bool) -> None:

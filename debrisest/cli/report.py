@@ -2,7 +2,7 @@
 
 import shlex
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from debrisest.runner.plan import Selection
     from debrisest.scenario.load import LoadedScenario
     from debrisest.show.report.chapter import Chapter
-    from debrisest.show.report.figures import Picture
 
 
 def report(
@@ -109,6 +108,7 @@ def _chapter(
     settings: Sequence[str],
     figures_of: Sequence[str] | None,
 ) -> "Chapter | None":
+    from dataclasses import replace
     from functools import partial
 
     from debrisest.results.address import STAGES
@@ -116,6 +116,7 @@ def _chapter(
     from debrisest.results.status import up_to_date
     from debrisest.runner.plan import Selection, plan
     from debrisest.show.report.chapter import chapter
+    from debrisest.show.report.figures import pictures
     from debrisest.show.tables.tabulate import chosen, read_by_tables, tabulate
 
     steps = plan(scenario, out, selection, STAGES)
@@ -125,20 +126,8 @@ def _chapter(
     wanted = plan(scenario, out, Selection(selection.runs), read_by_tables(scenario))
     rows, _ = tabulate(scenario, out, wanted)
     asked = partial(selection.asks_for, means=scenario.common.tables.means)
-    drawn = () if figures_of is None else _pictures(scenario, out, selection, figures_of)
+    others = [case for case in figures_of or () if case in scenario.cases]
+    shown = plan(scenario, out, replace(selection, cases=others), STAGES) if others else steps
+    drawn = () if figures_of is None else pictures(scenario, out, shown, bool(others))
     command = shlex.join(named([scenario], out, settings))
     return chapter(scenario, command, results, steps, chosen(rows, asked), settings, drawn)
-
-
-def _pictures(
-    scenario: "LoadedScenario", out: Path, selection: "Selection", cases: Sequence[str]
-) -> Iterator["Picture"]:
-    from dataclasses import replace
-
-    from debrisest.results.address import STAGES
-    from debrisest.runner.plan import plan
-    from debrisest.show.report.figures import pictures
-
-    named = [case for case in cases if case in scenario.cases]
-    asked = replace(selection, cases=named or selection.cases)
-    return pictures(scenario, out, plan(scenario, out, asked, STAGES), bool(named))
