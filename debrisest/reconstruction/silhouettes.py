@@ -50,22 +50,10 @@ def readings(frames: Frames, chroma: Frames | None = None) -> list[BoolArray]:
     return told
 
 
-def before_plain(frames: Frames, chroma: Frames | None = None) -> BoolArray | None:
-    """Return the silhouettes of one camera's images before a black sky or a plain backdrop.
-
-    None where what is behind has details, or nothing stands out.
-    """
-    try:
-        found = readings(frames, chroma)
-    except ValueError:
-        return None
-    return found[0] if len(found) > 1 or _dark(_border(_blurred(frames[:, 0]))) else None
-
-
 def _of_camera(frames: Frames, chroma: Frames | None) -> Iterator[BoolArray]:
     smooth = _blurred(frames)
     border = _border(smooth)
-    if _dark(border):
+    if np.median(border) < _DARK_GREY:
         yield _masks(smooth - float(np.median(border)), _threshold(border))
         return
     colours = [] if chroma is None else [chroma[..., 0], chroma[..., 1]]
@@ -95,10 +83,6 @@ def _border(smooth: Smooth) -> Array:
     n = BORDER_PX
     edges = (smooth[:, :n], smooth[:, -n:], smooth[:, :, :n], smooth[:, :, -n:])
     return np.concatenate([edge.ravel() for edge in edges]).astype(np.float64)
-
-
-def _dark(border: Array) -> bool:
-    return bool(np.median(border) < _DARK_GREY)
 
 
 def _threshold(values: Array) -> float:

@@ -31,10 +31,10 @@ def find_features(job: Job) -> None:
         names = [image_name(camera, frame) for frame in range(frames)]
         for number, some in enumerate(_portions(names, _AT_ONCE)):
             reader = colmap.ImageReaderOptions(
-                existing_camera_id=_known_camera(job, names),
-                mask_path=job.folder / "masks",
-                **_lens(k, how),
+                existing_camera_id=_known_camera(job, names), **_lens(k, how)
             )
+            if not how.leave_out_still:
+                reader.mask_path = job.folder / "masks"
             colmap.extract_features(
                 *(job.database, job.images, list(some)),
                 *(colmap.CameraMode.SINGLE, reader, extraction),

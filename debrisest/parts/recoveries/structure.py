@@ -8,11 +8,11 @@ from typing import Literal
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray, Data
+from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.problems.shape.model import pinhole_chroma, pinhole_images
 from debrisest.reconstruction.given_places import laid_onto
-from debrisest.reconstruction.silhouettes import Frames, before_plain, silhouettes
+from debrisest.reconstruction.silhouettes import Frames, silhouettes
 from debrisest.reconstruction.structure import How, Rig, Structure, structure_from_motion
 from debrisest.roles import RecoveryPart
 
@@ -43,8 +43,7 @@ class StructureFromMotion(RecoveryPart):
     kind: Literal["structure_from_motion"]
     leave_out: Literal["outside_silhouettes", "still_features"] = "outside_silhouettes"
     """Features that are none of the body's: those outside of silhouettes, or those that stand still
-    in the images; the latter asks for nothing but that the camera stands still too, and leaves out
-    those outside of silhouettes where the backdrop is plain."""
+    in the images; the latter asks for nothing but that the camera stands still too."""
 
     def recover(self, data: Data, clock: Clock) -> Data:
         """Return places (run, time), points (run, cloud_point) and how well they fit."""
@@ -68,14 +67,11 @@ class StructureFromMotion(RecoveryPart):
         still = self.leave_out == "still_features"
         spread = data.get("focal_spread", np.zeros(run + 1))[run]
         how = How(calibrate=bool(spread > 0.0), leave_out_still=still)
-        chroma, anywhere = pinhole_chroma(data, run), np.ones(frames.shape, dtype=np.bool_)
-        masks = before_plain(frames, chroma) if still else silhouettes(frames, chroma)
-        try:
-            found = _kept(frames, anywhere if masks is None else masks, rig, how)
-        except ValueError:
-            if not still or masks is None:
-                raise
-            found = _kept(frames, anywhere, rig, how)
+        anywhere = np.ones(frames.shape, dtype=np.bool_)
+        masks = anywhere if still else silhouettes(frames, pinhole_chroma(data, run))
+        folder = _folder(frames, rig, how)
+        found = structure_from_motion(frames, masks, rig, folder, how)
+        shutil.rmtree(folder, ignore_errors=True)
         if "given_rotation" not in data:
             return found
         return laid_onto(found, data["given_rotation"][run], data["given_translation"][run])
@@ -83,14 +79,6 @@ class StructureFromMotion(RecoveryPart):
     def assess(self, data: Data) -> Data:
         """Return the share of frames that found a place."""
         return {"coverage": np.isfinite(data["view_translation"][..., 0]).mean(axis=-1)}
-
-
-def _kept(frames: Frames, masks: BoolArray, rig: Rig, how: How) -> Structure:
-    """Return the structure, and remove what was kept on the way to it."""
-    folder = _folder(frames, masks, rig, how)
-    found = structure_from_motion(frames, masks, rig, folder, how)
-    shutil.rmtree(folder, ignore_errors=True)
-    return found
 
 
 def _scale(data: Data) -> str:
@@ -122,10 +110,10 @@ def _cameras(data: Data, found: list[Structure]) -> Data:
     }
 
 
-def _folder(frames: Frames, masks: BoolArray, rig: Rig, how: How) -> Path:
-    """Return the folder of these very images and masks in the user's cache."""
+def _folder(frames: Frames, rig: Rig, how: How) -> Path:
+    """Return the folder of these very images in the user's cache."""
     digest = sha256(bytes([StructureFromMotion.version]) + np.ascontiguousarray(frames).tobytes())
-    for values in (np.packbits(masks), *rig, *how):
+    for values in (*rig, *how):
         digest.update(np.ascontiguousarray(values).tobytes())
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return cache / "debrisest" / "structure" / digest.hexdigest()[:20]
