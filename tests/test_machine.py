@@ -304,7 +304,8 @@ def test_a_folder_that_is_moved_away_while_a_sweep_runs(
     folder: str, small: Path, reference: Path, shell: Callable
 ) -> None:
     """The sweep ends with sentences, or makes the folder anew; nobody counts what is not there."""
-    seen = 'while [ -z "$(ls results/small/slow/filter* 2>/dev/null)" ]; do sleep .1; done'
+    none = '[ -z "$(ls results/small/slow/filter* 2>/dev/null)" ]'
+    seen = f"while kill -0 $! 2>/dev/null && {none}; do sleep .1; done"
     sweep = "$debrisest sweep small.yaml --jobs 1 --quiet"
     done = shell(f"{sweep} >first & {seen}; mv {folder} away; wait $!; echo $?; {sweep} >again")
     assert done.stdout.strip() in ("0", "1", "2"), done.stderr
