@@ -19,6 +19,8 @@ static &
 pytest -n auto
 wait $!
 
+# The tests run what numba compiles, if it is there; the published tables are numpy's.
+export DEBRISEST_COMPILED=0
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
 cd configs

@@ -137,7 +137,14 @@ def untouched_catalog(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def process() -> Callable:
-    """Start the command line as a process of its own, leader of its process group."""
+    """Start the command line as a process of its own, leader of its process group.
+
+    It hears what a shell or nohup above the tests ignores.
+    """
+
+    def heard() -> None:
+        for number in (signal.SIGINT, signal.SIGHUP):
+            signal.signal(number, signal.SIG_DFL)
 
     def start(*arguments: object) -> subprocess.Popen:
         environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
@@ -148,7 +155,7 @@ def process() -> Callable:
             text=True,
             env=environment,
             start_new_session=True,
-            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+            preexec_fn=heard,
         )
 
     return start
