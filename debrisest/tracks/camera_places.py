@@ -14,6 +14,7 @@ import scipy
 
 from debrisest.arrays import Array
 from debrisest.errors import UserError
+from debrisest.tracks.text import read_text
 
 _SAME = 0.01
 """Of the focal length: how far the matrices of one camera may differ."""
@@ -37,7 +38,7 @@ def read_places(path: Path, names: Sequence[str]) -> CameraPlaces:
     Raises `UserError` with the line: other counts of numbers, no rotation, no positive focal
     length; an image without a line; matrices that differ.
     """
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = read_text(path).split("\n")
     found = {}
     for number, line in enumerate(lines, start=1):
         fields = line.split("#")[0].split()

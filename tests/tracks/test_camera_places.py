@@ -1,5 +1,6 @@
 """Lists of cameras: matrices, rotations and translations of images, or their projections."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -49,10 +50,16 @@ def test_a_camera_and_its_places_are_read(
         (rows(factors())[:1], "no line for the image t2.png; it has t1.png"),
         (rows([-one for one in factors()]), "par.txt:1: no rotation, or no positive focal length"),
         (rows([factors()[0], factors()[1] * np.repeat([1.1, 1.0], [2, 19])]), "matrices differ"),
-        ([], "it has nothing"),
+        (["2"], "it has nothing"),
+        ([], "the file is empty"),
     ],
 )
 def test_what_is_no_list_of_places_is_told(tmp_path: Path, lines: list[str], words: str) -> None:
     path = tmp_path / "par.txt"
     path.write_text("\n".join(lines))
     assert words in refusal(lambda: read_places(path, NAMES))
+
+
+def test_a_pipe_is_no_list_of_places(tmp_path: Path) -> None:
+    os.mkfifo(path := tmp_path / "par.txt")
+    assert "par.txt" in refusal(lambda: read_places(path, NAMES))
