@@ -17,6 +17,7 @@ from debrisest.problems.tumbling.attitude import TumblingAttitude
 from debrisest.results import store
 from debrisest.runner.compute import _attributes
 from debrisest.runner.plan import Selection, plan
+from debrisest.runner.stages import assess
 from debrisest.scenario.load import load_scenario
 
 ONE = ("--case", "slow", "--estimator", "triad")
@@ -195,6 +196,23 @@ def test_a_file_that_cannot_be_written(
     result = sweep(small, tmp_path / "out", *ONE)
     assert result.exit_code == 1
     assert "simulate, runs 0-2 failed: No space left on device; the same" in result.stderr
+
+
+def test_a_library_that_cannot_be_loaded_fails_no_run(
+    small: Path, tmp_path: Path, reference: Path, sweep: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def no_map(*_: Any) -> None:
+        raise ImportError("scipy/x.so: failed to map segment from shared object")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(assess, "silent_failures", no_map)
+        result = sweep(small, tmp_path, *ONE)
+    assert result.exit_code == 1
+    assert "a library could not be loaded: scipy/x.so: failed to map" in result.stderr
+    assert not list(tmp_path.rglob("assess*.h5"))
+    assert sweep(small, tmp_path).exit_code == 0
+    tables = [(out / "small" / "tables.csv").read_bytes() for out in (tmp_path, reference)]
+    assert tables[0] == tables[1]
 
 
 def test_an_old_file_does_not_hide_a_step_that_failed(

@@ -88,6 +88,8 @@ def _sentence(error: BaseException) -> str:
     if isinstance(error, MemoryError):
         why = "there is no memory for it; a value is far too large, or fewer --jobs leave enough"
         return ": ".join([*getattr(error, "__notes__", []), why])
+    if isinstance(error, ImportError):
+        return f"a library could not be loaded: {error}; the same command goes on from here"
     if isinstance(error, UserError | BrokenExecutor):
         return str(error)
     return f"{type(error).__name__}: {error}"

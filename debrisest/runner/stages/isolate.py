@@ -11,8 +11,11 @@ from debrisest.arrays import Data
 from debrisest.runner.stages.reason import reason
 from debrisest.vocabulary import has_runs
 
-MACHINE_FAILURES = (MemoryError, OSError)
-"""What is no fault of a run: the step is not finished, and is tried again next time."""
+MACHINE_FAILURES = (MemoryError, OSError, ImportError)
+"""What is no fault of a run: the step is not finished, and is tried again next time.
+
+Libraries are loaded when they are needed, which fails where there is no memory for them.
+"""
 
 
 @strict()
