@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError
 from importlib.metadata import version as version_of
 from importlib.util import find_spec
-from typing import TypeVar
+from typing import TypeVar, cast
 
 Kernel = TypeVar("Kernel", bound=Callable[..., object])
 
@@ -39,7 +39,6 @@ def compiled(kernel: Kernel) -> Kernel:
     from numba import njit
 
     try:
-        result: Kernel = njit(cache=True, error_model="numpy")(kernel)
+        return cast(Kernel, njit(cache=True, error_model="numpy")(kernel))
     except RuntimeError:
-        result = njit(error_model="numpy")(kernel)
-    return result
+        return cast(Kernel, njit(error_model="numpy")(kernel))
