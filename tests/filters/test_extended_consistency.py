@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from scipy.special import gammaincinv
 
 from debrisest.filters.gate import Gate
 from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
+from tests.filters.chi_square import assert_consistent, assert_inconsistent, nees, probable
 
 RUNS, EPOCHS = 300, 40
 F = np.eye(4) + np.eye(4, k=2)
@@ -44,28 +44,12 @@ def filtered(y, q=Q, r=R, p0=P0, **rule):
     return extended(model, start, covariance, y, keep=range(EPOCHS), **rule)
 
 
-def nees(history, truth, k):
-    error = (history.state - truth)[:, k]
-    solved = np.linalg.solve(history.covariance[:, k], error[..., None])[..., 0]
-    return (error * solved).sum()
-
-
-def probable(total, dof, tail=1e-8):
-    """Whether a chi-square sum lies between its `tail` quantiles."""
-    low, high = 2 * gammaincinv(dof / 2, [tail, 1 - tail])
-    return low < total < high
-
-
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("rule", [{}, {"iterations": 5}, {"gate": Gate()}])
 def test_matched_filter_is_consistent(seed, rule):
     truth, y = campaign(seed)
     history = filtered(y, **rule)
-    assert probable(history.nis.sum(), history.nis_dof.sum())
-    for k in (0, 10, EPOCHS - 1):
-        assert probable(nees(history, truth, k), 4 * RUNS)
-        inside = np.abs(history.state - truth)[:, k] < history.sigma[:, k]
-        assert abs(inside.mean() - 0.6827) < 6 * np.sqrt(0.6827 * 0.3173 / RUNS)
+    assert_consistent(history, truth, (0, 10, EPOCHS - 1))
 
 
 @pytest.mark.parametrize("change", [{"r": R / 4}, {"r": 4 * R}, {"q": Q / 20}])
@@ -73,8 +57,7 @@ def test_matched_filter_is_consistent(seed, rule):
 def test_mistuned_filter_is_not(change, iterations):
     truth, y = campaign(0)
     history = filtered(y, iterations=iterations, **change)
-    assert not probable(history.nis.sum(), history.nis_dof.sum())
-    assert not probable(nees(history, truth, EPOCHS - 1), 4 * RUNS)
+    assert_inconsistent(history, truth, EPOCHS - 1)
 
 
 def test_overconfident_start_is_found_at_once():

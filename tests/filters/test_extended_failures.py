@@ -1,5 +1,7 @@
 """One bad run is an outcome of that run, and of no other."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -7,69 +9,25 @@ from debrisest.filters.gate import Gate
 from debrisest.filters.kalman.extended import extended
 from debrisest.filters.model import Model
 from debrisest.filters.status import FilterStatus
+from tests.filters.spoiled import (
+    BAD,
+    CAUSES,
+    EPOCHS,
+    RUNS,
+    assert_divergence_stays_in_its_run,
+    assert_no_run_depends_on_another,
+    assert_wrong_shapes_are_refused,
+    cubic_model,
+    problem,
+)
 
-RUNS, EPOCHS, BAD = 5, 12, 2
-GOOD = [run for run in range(RUNS) if run != BAD]
 RULES = [{}, {"iterations": 8}, {"iterations": 8, "stop": "relative_norm", "tolerance": 1e-6}]
-
-
-def per_run(estimates):
-    fields = estimates._asdict()
-    return {name: fields[name] for name in fields.keys() - {"kept", "counts"}} | estimates.counts
-
-
-def cubic_model():
-    """Grows without bound once |x| is large; a run whose second component exceeds 50 is blind."""
-    return Model(
-        process=lambda x, _: np.stack(
-            [x[..., 0] * (1 + 0.01 * x[..., 0] ** 2), np.sin(x[..., 0]) + 0.9 * x[..., 1]], axis=-1
-        ),
-        measurement=lambda x, _: np.where(x[:, :1, 1:] > 50.0, 1.0, x[..., :1] + x[..., 1:] ** 2),
-        process_noise=np.diag([1e-3, 1e-3]),
-        measurement_noise=np.array([[0.0]]),
-        error_names=("x", "y"),
-    )
-
-
-def problem():
-    rng = np.random.default_rng(0)
-    start = 0.3 * rng.normal(size=(RUNS, 2))
-    covariance = np.stack([np.diag([0.1, 0.2])] * RUNS)
-    y = 0.3 * rng.normal(size=(RUNS, EPOCHS, 1))
-    y[:, 0] = np.nan
-    return start, covariance, y
-
-
-CAUSES = {
-    "overflow": (0, (BAD, 0), 1e200, FilterStatus.DIVERGED, 1),
-    "singular innovation covariance": (0, (BAD, 1), 60.0, FilterStatus.DIVERGED, 1),
-    "infinite measurement": (2, (BAD, 7), np.inf, FilterStatus.DIVERGED, 7),
-    "no start": (0, BAD, np.nan, FilterStatus.NO_START, 0),
-    "no start covariance": (1, (BAD, 0, 1), np.inf, FilterStatus.NO_START, 0),
-}
 
 
 @pytest.mark.parametrize("rule", RULES)
 @pytest.mark.parametrize("cause", CAUSES)
 def test_divergence_stays_in_its_run(cause, rule):
-    which, where, value, status, epoch = CAUSES[cause]
-    given = problem()
-    sound = extended(cubic_model(), *given, keep=[3, 8], **rule)
-    given[which][where] = value
-    history = extended(cubic_model(), *given, keep=[3, 8], **rule)
-
-    for name, values in per_run(sound).items():
-        assert np.array_equal(per_run(history)[name][GOOD], values[GOOD]), name
-    assert (sound.status == FilterStatus.FINISHED.sentence).all()
-    assert (sound.diverged_at == -1).all()
-    assert history.status[BAD] == status.sentence
-    assert history.diverged_at[BAD] == epoch
-    for values in (history.state, history.sigma, history.nis):
-        assert np.isfinite(values[BAD, :epoch]).all()
-        assert np.isnan(values[BAD, epoch:]).all()
-    for counts in (history.nis_dof, history.counts["updates"]):
-        assert not counts[BAD, epoch:].any()
-    assert np.array_equal(np.isnan(history.covariance[BAD, :, 0, 0]), history.kept >= epoch)
+    assert_divergence_stays_in_its_run(partial(extended, cubic_model(), **rule), cause)
 
 
 def test_a_gate_keeps_an_infinite_measurement_out():
@@ -88,16 +46,12 @@ def test_a_gate_keeps_an_infinite_measurement_out():
 def test_a_run_does_not_depend_on_its_neighbours(rule):
     start, covariance, y = problem()
     y[3, 5:] += 4.0
-    together = extended(cubic_model(), start, covariance, y, **rule)
+    filtered = partial(extended, cubic_model(), **rule)
+    together = assert_no_run_depends_on_another(filtered, (start, covariance, y))
     assert "iterations" not in rule or np.ptp(together.counts["updates"], axis=0).any()
     assert "gate" not in rule or (
         together.counts["reopened"][3] > 0 and np.ptp(together.counts["reopened"]) > 0
     )
-    for run in range(RUNS):
-        one = slice(run, run + 1)
-        alone = extended(cubic_model(), start[one], covariance[one], y[one], **rule)
-        for name, values in per_run(together).items():
-            assert np.array_equal(per_run(alone)[name][0], values[run]), name
 
 
 def test_a_model_of_some_runs_is_asked_for():
@@ -140,11 +94,7 @@ def test_a_component_known_exactly_stays_so():
 
 
 def test_wrong_arguments_are_refused():
-    start, covariance, y = problem()
-    with pytest.raises(ValueError, match="start covariance of shape"):
-        extended(cubic_model(), start, covariance[:2], y)
-    with pytest.raises(ValueError, match="kept epochs"):
-        extended(cubic_model(), start, covariance, y, keep=[EPOCHS])
+    assert_wrong_shapes_are_refused(partial(extended, cubic_model()))
     for wrong in ({"iterations": 0}, {"tolerance": 0.0}, {"stop": "norm"}):
         with pytest.raises(ValueError, match="at least one iteration, a positive tolerance"):
-            extended(cubic_model(), start, covariance, y, **wrong)
+            extended(cubic_model(), *problem(), **wrong)

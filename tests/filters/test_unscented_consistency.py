@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from scipy.special import gammaincinv
 
 from debrisest.filters.kalman.unscented import unscented
 from debrisest.filters.model import Model
+from tests.filters.chi_square import assert_consistent, assert_inconsistent, nees, probable
 
 RUNS, EPOCHS = 300, 40
 F = np.array([[1.0, 1.0], [0.0, 1.0]])
@@ -33,35 +33,18 @@ def filtered(y, q=Q, r=R, p0=P0):
     return unscented(model, start, covariance, y, keep=range(EPOCHS), redraw=True)
 
 
-def nees(history, truth, k):
-    error = (history.state - truth)[:, k]
-    solved = np.linalg.solve(history.covariance[:, k], error[..., None])[..., 0]
-    return (error * solved).sum()
-
-
-def probable(total, dof, tail=1e-8):
-    """Whether a chi-square sum lies between its `tail` quantiles."""
-    low, high = 2 * gammaincinv(dof / 2, [tail, 1 - tail])
-    return low < total < high
-
-
 @pytest.mark.parametrize("seed", [0, 1])
 def test_matched_filter_is_consistent(seed):
     truth, y = campaign(seed)
     history = filtered(y)
-    assert probable(history.nis.sum(), history.nis_dof.sum())
-    for k in (0, 10, EPOCHS - 1):
-        assert probable(nees(history, truth, k), 2 * RUNS)
-        inside = np.abs(history.state - truth)[:, k] < history.sigma[:, k]
-        assert abs(inside.mean() - 0.6827) < 6 * np.sqrt(0.6827 * 0.3173 / RUNS)
+    assert_consistent(history, truth, (0, 10, EPOCHS - 1))
 
 
 @pytest.mark.parametrize("change", [{"r": R / 4}, {"r": 4 * R}, {"q": Q / 20}])
 def test_mistuned_filter_is_not(change):
     truth, y = campaign(0)
     history = filtered(y, **change)
-    assert not probable(history.nis.sum(), history.nis_dof.sum())
-    assert not probable(nees(history, truth, EPOCHS - 1), 2 * RUNS)
+    assert_inconsistent(history, truth, EPOCHS - 1)
 
 
 def test_overconfident_start_is_found_at_once():

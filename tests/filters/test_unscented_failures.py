@@ -1,77 +1,35 @@
 """One bad run is an outcome of that run, and of no other."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
 from debrisest.filters.status import FilterStatus
-
-RUNS, EPOCHS, BAD = 5, 12, 2
-GOOD = [run for run in range(RUNS) if run != BAD]
-
-
-def cubic_model():
-    """Grows without bound once |x| is large; a run whose second component exceeds 50 is blind."""
-    return Model(
-        process=lambda x, _: np.stack(
-            [x[..., 0] * (1 + 0.01 * x[..., 0] ** 2), np.sin(x[..., 0]) + 0.9 * x[..., 1]], axis=-1
-        ),
-        measurement=lambda x, _: np.where(x[:, :1, 1:] > 50.0, 1.0, x[..., :1] + x[..., 1:] ** 2),
-        process_noise=np.diag([1e-3, 1e-3]),
-        measurement_noise=np.array([[0.0]]),
-        error_names=("x", "y"),
-    )
-
-
-def problem():
-    rng = np.random.default_rng(0)
-    start = 0.3 * rng.normal(size=(RUNS, 2))
-    covariance = np.stack([np.diag([0.1, 0.2])] * RUNS)
-    y = 0.3 * rng.normal(size=(RUNS, EPOCHS, 1))
-    y[:, 0] = np.nan
-    return start, covariance, y
-
-
-CAUSES = {
-    "overflow": (0, (BAD, 0), 1e200, FilterStatus.DIVERGED, 1),
-    "singular innovation covariance": (0, (BAD, 1), 60.0, FilterStatus.DIVERGED, 1),
-    "infinite measurement": (2, (BAD, 7), np.inf, FilterStatus.DIVERGED, 7),
-    "no start": (0, BAD, np.nan, FilterStatus.NO_START, 0),
-    "no start covariance": (1, (BAD, 0, 1), np.inf, FilterStatus.NO_START, 0),
-}
+from tests.filters.spoiled import (
+    BAD,
+    CAUSES,
+    EPOCHS,
+    GOOD,
+    assert_divergence_stays_in_its_run,
+    assert_no_run_depends_on_another,
+    assert_wrong_shapes_are_refused,
+    cubic_model,
+    problem,
+)
 
 
 @pytest.mark.parametrize("redraw", [False, True])
 @pytest.mark.parametrize("cause", CAUSES)
 def test_divergence_stays_in_its_run(cause, redraw):
-    which, where, value, status, epoch = CAUSES[cause]
-    given = problem()
-    sound = unscented(cubic_model(), *given, keep=[3, 8], redraw=redraw)
-    given[which][where] = value
-    history = unscented(cubic_model(), *given, keep=[3, 8], redraw=redraw)
-
-    for name in ("state", "sigma", "covariance", "nis", "nis_dof", "status"):
-        assert np.array_equal(getattr(history, name)[GOOD], getattr(sound, name)[GOOD]), name
-    assert np.array_equal(history.counts["repairs"][GOOD], sound.counts["repairs"][GOOD])
-    assert (sound.status == FilterStatus.FINISHED.sentence).all()
-    assert (sound.diverged_at == -1).all()
-    assert history.status[BAD] == status.sentence
-    assert history.diverged_at[BAD] == epoch
-    for values in (history.state, history.sigma, history.nis):
-        assert np.isfinite(values[BAD, :epoch]).all()
-        assert np.isnan(values[BAD, epoch:]).all()
-    assert not history.nis_dof[BAD, epoch:].any()
-    assert np.array_equal(np.isnan(history.covariance[BAD, :, 0, 0]), history.kept >= epoch)
+    filtered = partial(unscented, cubic_model(), redraw=redraw)
+    assert_divergence_stays_in_its_run(filtered, cause)
 
 
 def test_a_run_does_not_depend_on_its_neighbours():
-    start, covariance, y = problem()
-    together = unscented(cubic_model(), start, covariance, y)
-    for run in range(RUNS):
-        one = slice(run, run + 1)
-        alone = unscented(cubic_model(), start[one], covariance[one], y[one])
-        assert np.array_equal(alone.state[0], together.state[run])
+    assert_no_run_depends_on_another(partial(unscented, cubic_model()), problem())
 
 
 def linear_model():
@@ -121,10 +79,6 @@ def test_every_status_says_what_happened():
 
 
 def test_wrong_arguments_are_refused():
-    start, covariance, y = problem()
-    with pytest.raises(ValueError, match="start covariance of shape"):
-        unscented(cubic_model(), start, covariance[:2], y)
-    with pytest.raises(ValueError, match="kept epochs"):
-        unscented(cubic_model(), start, covariance, y, keep=[EPOCHS])
+    assert_wrong_shapes_are_refused(partial(unscented, cubic_model()))
     with pytest.raises(ValueError, match="must be positive"):
-        unscented(cubic_model(), start, covariance, y, UnscentedParameters(kappa=-2.0))
+        unscented(cubic_model(), *problem(), UnscentedParameters(kappa=-2.0))
