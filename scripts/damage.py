@@ -34,6 +34,7 @@ import numpy as np
 from debrisest.cli import app
 from debrisest.errors import UserError
 from debrisest.files import put
+from debrisest.results import store
 from debrisest.results.open import find_results
 from debrisest.results.overview import overview
 from debrisest.results.sealed import read_image, read_label, sealed
@@ -307,6 +308,7 @@ def _of_file(
             damage(path)
         damaged = path.read_bytes()
         faulthandler.dump_traceback_later(4 * WATCH_S, exit=True)
+        store._labelled.cache_clear()
         wrong = list(_outcomes(swept, number, right))
         faulthandler.cancel_dump_traceback_later()
         found.update([(kind, "all"), *((kind, how) for how in wrong)])
