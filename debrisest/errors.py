@@ -12,6 +12,11 @@ UNCARRIED = re.compile(
 """Characters that control lines or the direction of writing, or that nobody sees (but for those
 that join letters), and halves that no file can hold."""
 
+NO_MEMORY = (
+    "there is not enough memory for it: a number may be far too large; if none is, fewer --jobs "
+    "leave more for each"
+)
+
 
 def printable(text: str) -> str:
     """Return a text in which what no text can carry is written out."""

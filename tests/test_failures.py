@@ -180,7 +180,7 @@ def test_too_little_memory_is_told_with_part_and_keys(
     monkeypatch.setattr(FirstSamples, "start", lambda *_: np.zeros((2**50, 2)))
     result = sweep(small, tmp_path / "out", *ONE)
     assert result.exit_code == 1
-    (line,) = (line for line in result.stderr.splitlines() if "no memory" in line)
+    (line,) = (line for line in result.stderr.splitlines() if "not enough memory" in line)
     assert "estimators.triad.start (first_samples) with samples: 5, variance: " in line
     assert not list((tmp_path / "out").rglob("filter*"))
 

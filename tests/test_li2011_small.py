@@ -158,7 +158,7 @@ def test_what_was_simulated_is_drawn_once_for_each_case(
         ("sensors.control.control_step_s=1e300", "must be at most step_s, 1 s, and at least"),
         ("sensors.control.margin_px=300", "must be less than the camera's half_size_px, 180 px"),
         ("sensors.control.switching.least_s=90", "must not be longer than most_s, 40 s"),
-        ("sensors.points.clutter={count: 1000000000000000, half_width_px: 1}", "more memory than"),
+        ("sensors.points.clutter={count: 1000000000000000, half_width_px: 1}", "not enough memory"),
         ("sensors.points.companions={count: 8, spread_km: 1}", "at most 7 pieces beside"),
         ("estimators.best.cases=[nominl]", "unknown case 'nominl'.*did you mean nominal"),
         (

@@ -10,10 +10,9 @@ from typer import BadParameter
 from typer.core import TyperGroup
 
 from debrisest.cli.streams import steady
-from debrisest.errors import UserError, meant
+from debrisest.errors import NO_MEMORY, UserError, meant
 from debrisest.interrupts import SENTENCE
 
-_NO_MEMORY = "there is not enough memory; fewer --jobs, or a part of the data, need less"
 _PLACE = re.compile(r"^([^\n]*?):(\d+):\d+(?=: )")
 _MOST_ALIKE = 20
 """Problems that differ in their place alone, beyond which only the first is told."""
@@ -47,11 +46,11 @@ class Commands(TyperGroup):
                 raise
             _stop(2, _sentence(error))
         except MemoryError:
-            _stop(2, _NO_MEMORY)
+            _stop(2, NO_MEMORY)
         except ImportError as error:
             if "failed to map" not in str(error):
                 raise
-            _stop(2, _NO_MEMORY)
+            _stop(2, NO_MEMORY)
         except KeyboardInterrupt as error:
             _stop(getattr(error, "exit_code", 130), SENTENCE)
 

@@ -19,6 +19,8 @@ class Chunk(NamedTuple):
     runs: int
     """How many runs of it are read."""
     attributes: dict[str, Any]
+    digest: str = ""
+    """Of its label, which has that of its numbers."""
 
     def is_whole(self, index: int) -> bool:
         """Return whether it has the trajectories of the run of this index in it."""

@@ -47,9 +47,8 @@ def find_results(folder: Path) -> Results:
         elif not store.fits(found.attributes, address.attributes):
             left_out.append(f"{path} is {store.Condition.ANOTHER.value}")
         else:
-            chunks.append(
-                Chunk(address, path, int(found.attributes.get("runs", 0)), found.attributes)
-            )
+            runs = int(found.attributes.get("runs", 0))
+            chunks.append(Chunk(address, path, runs, found.attributes, found.digest))
     return Results(folder, tuple(sorted(chunks, key=lambda one: one.address.order)), left_out)
 
 

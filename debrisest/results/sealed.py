@@ -31,6 +31,8 @@ class Label(NamedTuple):
     """Of the HDF5 part, in bytes."""
     sha256: str
     """Of the HDF5 part."""
+    digest: str = ""
+    """Of the label itself."""
 
 
 def sealed(image: bytes, attributes: dict[str, Any]) -> bytes:
@@ -51,7 +53,8 @@ def read_label(file: BinaryIO) -> Label | None:
     if sha256(label).digest() != digest:
         return None
     told = _label(label)
-    return told if told and told.length + length + _SEAL.size == size else None
+    fits = told and told.length + length + _SEAL.size == size
+    return told._replace(digest=digest.hex()) if told and fits else None
 
 
 def read_image(file: BinaryIO, label: Label) -> bytes | None:

@@ -51,6 +51,8 @@ class Checkpoint(NamedTuple):
 
     condition: Condition
     attributes: dict[str, Any] = {}
+    digest: str = ""
+    """Of its label, which has that of its numbers."""
 
 
 def write(
@@ -117,7 +119,7 @@ def frames(path: Path) -> dict[str, str]:
 
 def require(path: Path, expected: Mapping[str, Any]) -> None:
     """Raise UserError unless a file is there, as its label has it, with attributes as expected."""
-    condition, attributes = inspect(path, Depth.LABEL)
+    condition, attributes, _ = inspect(path, Depth.LABEL)
     if condition is Condition.WHOLE and not fits(attributes, expected):
         condition = Condition.ANOTHER
     if condition is not Condition.WHOLE:
@@ -127,7 +129,7 @@ def require(path: Path, expected: Mapping[str, Any]) -> None:
 @contextmanager
 def _whole(path: Path, expected: Mapping[str, Any]) -> Iterator[tuple[Any, dict[str, Any]]]:
     """Yield the verified HDF5 file of a checkpoint and its attributes, or raise UserError."""
-    (condition, attributes), image = _look(path)
+    (condition, attributes, _), image = _look(path)
     if condition is Condition.WHOLE and not fits(attributes, expected):
         condition = Condition.ANOTHER
     if condition is not Condition.WHOLE:
@@ -180,7 +182,7 @@ def _read(path: Path, numbers: bool = True) -> tuple[Checkpoint, bytes]:
             return Checkpoint(Condition.DAMAGED), b""
         image = read_image(file, label) if numbers else b""
     condition = Condition.DAMAGED if image is None else Condition.WHOLE
-    return Checkpoint(condition, label.attributes), image or b""
+    return Checkpoint(condition, label.attributes, label.digest), image or b""
 
 
 def _told(path: Path, condition: Condition) -> str:

@@ -20,7 +20,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from debrisest.errors import UserError
-from debrisest.runner.fingerprint import fingerprint
+from debrisest.fingerprint import fingerprint
 
 PATIENCE_S = 30.0
 """How long a cluster may be without a worker."""
@@ -28,7 +28,7 @@ _CHECKED_EVERY_S = 1.0
 _LOGGERS = ("distributed", "tornado", "asyncio")
 """What tells of a lost connection in its own way; loggers below these have levels of their own."""
 _LOST = "the connection to the dask scheduler was lost; start it and run again"
-_PROOF = "__import__('debrisest.runner.fingerprint', fromlist=['x']).fingerprint()"
+_PROOF = "__import__('debrisest.fingerprint', fromlist=['x']).fingerprint()"
 
 
 class ClusterLost(BrokenExecutor):

@@ -6,7 +6,7 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from typing import NamedTuple
 
-from debrisest.errors import UserError
+from debrisest.errors import NO_MEMORY, UserError
 from debrisest.runner.compute import compute
 from debrisest.runner.plan import Step
 from debrisest.runner.schedule import Schedule
@@ -86,8 +86,7 @@ def _sentence(error: BaseException) -> str:
         place = f"{error.filename}: " if error.filename else ""
         return f"{place}{error.strerror or error}; the same command goes on from here"
     if isinstance(error, MemoryError):
-        why = "there is no memory for it; a value is far too large, or fewer --jobs leave enough"
-        return ": ".join([*getattr(error, "__notes__", []), why])
+        return ": ".join([*getattr(error, "__notes__", []), NO_MEMORY])
     if isinstance(error, ImportError):
         return f"a library could not be loaded: {error}; the same command goes on from here"
     if isinstance(error, UserError | BrokenExecutor):

@@ -55,7 +55,7 @@ def rerun(path: Path, plugins: tuple[Plugin, ...] = ()) -> Rerun:
 
 
 def _attributes(path: Path) -> dict[str, Any]:
-    condition, attributes = store.inspect(path)
+    condition, attributes, _ = store.inspect(path)
     if condition is not store.Condition.WHOLE:
         raise UserError(f"{path}: the file is {condition.value}; give a file of results (.h5)")
     if lacking := [name for name in _NEEDED if name not in attributes]:

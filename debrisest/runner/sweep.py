@@ -11,7 +11,6 @@ from debrisest.files import remove_leftovers
 from debrisest.interrupts import raised
 from debrisest.locked import locked
 from debrisest.results.address import STAGES
-from debrisest.results.chunk import Chunk
 from debrisest.results.open import find_results
 from debrisest.runner.execute import execute, trusted
 from debrisest.runner.executors import executor, require_guarded
@@ -47,8 +46,7 @@ def bring_up_to_date(
             locks.enter_context(locked(out / scenario.name))
             remove_leftovers(out / scenario.name)
         steps = [step for one in scenarios for step in plan(one, out, selection, STAGES)]
-        known = [chunk for one in scenarios for chunk in find_results(out / one.name).chunks]
-        errors = _run_due([*take_over(steps)], machine, known)
+        errors = _run_due([*take_over(steps)], machine, [out / one.name for one in scenarios])
     for scenario in scenarios:
         results = find_results(out / scenario.name)
         written = {step.address: step.runs for step in steps if step.name not in errors}
@@ -57,15 +55,17 @@ def bring_up_to_date(
     return errors
 
 
-def _run_due(steps: list[Step], machine: Machine, known: Sequence[Chunk]) -> dict[str, str]:
+def _run_due(steps: list[Step], machine: Machine, folders: Sequence[Path]) -> dict[str, str]:
     """Run what is due, if anything is; return the steps that wrote no file, with reasons."""
     due = [step for step in steps if step.is_due]
-    pace = Pace(due, known)
+    if not due:
+        return {}
+    pace = Pace(due, [chunk for folder in folders for chunk in find_results(folder).chunks])
     with raised() as check, progress(len(due), machine.quiet, pace.left) as told:
         for step in due:
             if step.notice:
                 told.say(step.notice)
-        return _run(steps, machine, pace, told, check) if due else {}
+        return _run(steps, machine, pace, told, check)
 
 
 def _run(

@@ -9,7 +9,7 @@ from debrisest.arrays import Data
 from debrisest.assessment.statistics import window_mask
 from debrisest.clock import Clock
 from debrisest.draws import Draws
-from debrisest.errors import allowed_names
+from debrisest.errors import NO_MEMORY, allowed_names
 from debrisest.scenario.case import Case
 from debrisest.scenario.contracts import Found, parts_that_do_not_fit
 from debrisest.scenario.document import KeyPath
@@ -20,7 +20,6 @@ from debrisest.scenario.window import window_of
 from debrisest.vocabulary import VOCABULARY
 
 MOST_EPOCHS = 10_000_000
-_TOO_MUCH = "two epochs of one run take more memory than there is; a number here is far too large"
 
 
 def case_problems(case: Case) -> Found:
@@ -91,7 +90,7 @@ def _parts_that_refuse(case: Case) -> Found:
             yield tuple(path.split(".", 1)), str(error)
             return
         except MemoryError:
-            yield tuple(path.split(".", 1)), _TOO_MUCH
+            yield tuple(path.split(".", 1)), NO_MEMORY
             return
 
 

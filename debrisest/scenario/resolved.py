@@ -14,7 +14,12 @@ from debrisest.scenario.schema import SIMULATED, Table
 
 
 def resolved(case: Case) -> str:
-    """Return a scenario file (YAML) whose only case is this one.
+    """Return a scenario file (YAML) whose only case is this one, as ``settings`` has it."""
+    return text_of(settings(case))
+
+
+def settings(case: Case) -> dict[str, Any]:
+    """Return the plain data of a scenario file whose only case is this one.
 
     Files of measured data are named by their whole paths; published values are left out.
     """
@@ -27,7 +32,7 @@ def resolved(case: Case) -> str:
         value["draws"] = case.draws
     value["estimators"] = {name: _estimator(case, value, name) for name in case.estimators}
     value["tables"] = _tables(case, value["tables"])
-    return text_of(value | {"cases": {case.name: {}}})
+    return value | {"cases": {case.name: {}}}
 
 
 def _estimator(case: Case, value: dict[str, Any], name: str) -> dict[str, Any]:

@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 from debrisest.errors import UserError
+from debrisest.fingerprint import fingerprint
 from debrisest.runner import cluster, read_back
 from debrisest.runner.executors import InProcess
-from debrisest.runner.fingerprint import fingerprint
 from debrisest.runner.plan import Selection, plan
 from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.load import load_scenario
@@ -49,7 +49,7 @@ class Client:
 def test_what_is_imported_counts_not_what_a_list_of_packages_says(tmp_path: Path) -> None:
     """A numpy of another version that PYTHONPATH puts before the installed one has no metadata."""
     (tmp_path / "numpy.py").write_text("__version__ = '1.0'\n")
-    told = "import debrisest.runner.fingerprint as f; f._BELOW = ('numpy',); print(f.fingerprint())"
+    told = "import debrisest.fingerprint as f; f._BELOW = ('numpy',); print(f.fingerprint())"
     found = subprocess.run(
         [sys.executable, "-c", told],
         env=os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])},

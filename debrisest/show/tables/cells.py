@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Hashable, Mapping
 from functools import cache, partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -32,21 +32,35 @@ COLUMNS = [
 ]
 
 
-def cells(scenario: LoadedScenario, results: Assessed) -> pd.DataFrame:
-    """Return one row per cell, in the order of the layout, then case, estimator, quantity.
+Row: TypeAlias = dict[str, Any]
+"""A cell, by COLUMNS."""
 
-    The values of a grid have a column each, the last ones, by the paths of their keys.
-    """
+
+def cells(scenario: LoadedScenario, results: Assessed) -> pd.DataFrame:
+    """Return one row per cell as ``rows_of`` does, as ``framed`` does."""
+    return framed(scenario, rows_of(scenario, results))
+
+
+def rows_of(scenario: LoadedScenario, results: Assessed) -> list[Row]:
+    """Return one row per cell, in the order of the layout, then case, estimator, quantity."""
     published = published_values(scenario)
-    rows = [
+    rows = (
         _row(key, estimator, table, scenario, results, measured, published.get(key))
         for table in scenario.common.tables.layout
         for measured in [cache(partial(_measured, table, scenario.common.tables, results))]
         for key, estimator in keys_of(
             table, scenario.common.tables, scenario.cases, scenario.common.estimators
         )
-    ]
-    found = pd.DataFrame([row for row in rows if row is not None], columns=COLUMNS)
+    )
+    return [row for row in rows if row is not None]
+
+
+def framed(scenario: LoadedScenario, rows: list[Row]) -> pd.DataFrame:
+    """Return rows as a frame.
+
+    The values of a grid have a column each, the last ones, by the paths of their keys.
+    """
+    found = pd.DataFrame(rows, columns=COLUMNS)
     for key in dict.fromkeys(key for values in scenario.grid.values() for key in values):
         found[key] = [scenario.grid.get(case, {}).get(key) for case in found["case"]]
     return found
@@ -101,7 +115,7 @@ def _row(
     results: Assessed,
     measured: Callable[[CellKey, str], dict[str, Any] | None],
     published: Published | None,
-) -> dict[str, object] | None:
+) -> Row | None:
     found = measured(key, estimator)
     if found is None:
         return None

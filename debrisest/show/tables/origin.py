@@ -5,12 +5,11 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-import yaml
 
 from debrisest.results.open import find_results
 from debrisest.results.status import difference
 from debrisest.scenario.load import LoadedScenario
-from debrisest.scenario.resolved import resolved
+from debrisest.scenario.resolved import settings
 
 NAME = "tables.origin.json"
 
@@ -24,7 +23,7 @@ def origin(scenario: LoadedScenario, out: Path, rows: pd.DataFrame) -> dict[str,
     case = next(iter(scenario.cases.values()))
     runs = rows["runs"][rows["case"].isin(list(scenario.cases))]
     return {
-        "settings": yaml.safe_load(resolved(case)) | {"runs": int(runs.max())},
+        "settings": settings(case) | {"runs": int(runs.max())},
         "software": sorted({str(each.get("software")) for each in told}),
         "commit": sorted({str(each.get("commit")) for each in told}),
         "computed": [created[0], created[-1]] if created else [],

@@ -64,12 +64,12 @@ def published_values(scenario: LoadedScenario) -> dict[CellKey, Published]:
 
 def derived_values(scenario: LoadedScenario, cells: pd.DataFrame) -> dict[CellKey, str]:
     """Return how those of the cells' published values were made that are not printed so."""
-    shown = set(cells[list(CellKey._fields)].itertuples(index=False, name=None))
-    return {
-        key: value.derived
-        for key, value in published_values(scenario).items()
-        if value.derived and key in shown
-    }
+    values = published_values(scenario).items()
+    derived = {key: value.derived for key, value in values if value.derived}
+    if not derived:
+        return {}
+    shown = set(zip(*(cells[name] for name in CellKey._fields)))
+    return {key: how for key, how in derived.items() if key in shown}
 
 
 def check_published(scenario: LoadedScenario) -> None:

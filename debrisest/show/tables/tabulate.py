@@ -11,8 +11,9 @@ from debrisest.results.assessed import assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
-from debrisest.show.tables.cells import COLUMNS, cells
+from debrisest.show.tables.cells import COLUMNS, framed, rows_of
 from debrisest.show.tables.figures import dataset_of
+from debrisest.show.tables.kept import kept
 from debrisest.show.tables.origin import NAME, origin, replaced
 from debrisest.show.tables.render import MARK, render
 
@@ -25,7 +26,12 @@ def tabulate(
     files = [one for one in wanted if one.address.stage in shown]
     results = up_to_date(find_results(out / scenario.name), files, complete=True)
     stale = [one for one in files if one.reason]
-    return cells(scenario, assessed(results, simulated, _quantities(scenario))), stale
+    rows = kept(
+        scenario,
+        results,
+        lambda: rows_of(scenario, assessed(results, simulated, _quantities(scenario))),
+    )
+    return framed(scenario, rows), stale
 
 
 def read_by_tables(scenario: LoadedScenario) -> set[str]:

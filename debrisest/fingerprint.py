@@ -1,4 +1,4 @@
-"""What the numbers of a step depend on beside its scenario: the code, and the versions below it."""
+"""What numbers depend on beside a scenario: the code, and the versions below it."""
 
 import platform
 from functools import cache
@@ -14,7 +14,7 @@ _BELOW = ("numpy", "scipy", "h5py", "pydantic")
 @cache
 def fingerprint() -> dict[str, str]:
     """Return the versions of what is imported, and of this package a digest of its source."""
-    package = Path(__file__).parent.parent
+    package = Path(__file__).parent
     source = sha256()
     for path in sorted(package.rglob("*.py")):
         source.update(f"{path.relative_to(package).as_posix()}\0".encode() + path.read_bytes())
