@@ -13,7 +13,7 @@ import xarray
 
 from debrisest import files
 from debrisest.errors import UserError
-from debrisest.results import image, sealed, store
+from debrisest.results import sealed, store, written
 from debrisest.results.store import Condition
 from debrisest.vocabulary import VOCABULARY
 
@@ -128,7 +128,7 @@ def test_h5py_alone_finds_the_scales(file: Path) -> None:
 
 @pytest.mark.parametrize(
     ("module", "moment"),
-    [(image, "_write_data"), (sealed, "sha256"), (Path, "write_bytes"), (files, "_synchronise")],
+    [(written, "_write_data"), (sealed, "sha256"), (Path, "write_bytes"), (files, "_synchronise")],
 )
 def test_a_write_that_fails_leaves_the_old_file(
     module: object, moment: str, file: Path, monkeypatch: pytest.MonkeyPatch, same_data: Callable
@@ -268,7 +268,7 @@ def test_what_is_no_dataset_of_ours_is_damage_even_under_a_seal(
     edit: Callable, file: Path, tmp_path: Path
 ) -> None:
     bare = tmp_path / "bare.h5"
-    bare.write_bytes(image.image_of(example(), ATTRIBUTES, {}))
+    bare.write_bytes(written.image_of(example(), ATTRIBUTES, {}))
     label = store.inspect(file).attributes
     file.write_bytes(sealed.sealed(bare.read_bytes(), label))
     assert store.inspect(file).condition is Condition.WHOLE

@@ -16,3 +16,9 @@ def quantile(probability: Any, dof: Any) -> Array:
 def upper_quantile(probability: Any, dof: Any) -> Array:
     """Value that is below it with a probability."""
     return np.asarray(scipy.special.chdtri(dof, probability))
+
+
+def chance_above(square: Array, dof: Array) -> Array:
+    """Probability of a larger chi-square; zero without any degree of freedom."""
+    chance = scipy.special.chdtrc(np.maximum(dof, 1), np.maximum(square, 0.0))
+    return np.where(dof > 0, chance, 0.0)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from debrisest.arrays import Array, Data
+from debrisest.arrays import Data
+from debrisest.assessment.chi_square import chance_above
 
 _CHANCE = 5.7e-7
 """Of five sigma of a normal variable, on both sides."""
@@ -26,15 +27,8 @@ def silent_failures(errors: Data) -> Data:
     name = "w" if "w" in errors else "nees"
     if name in errors and f"{name}_dof" in errors:
         square, dof = errors[name][:, -1], errors[f"{name}_dof"][:, -1]
-        failed = ~((square > _NO_MINIMUM) & (_chance(square, dof) > _CHANCE))
+        failed = ~((square > _NO_MINIMUM) & (chance_above(square * dof, dof) > _CHANCE))
         if "deviation" in errors:
             failed |= errors["deviation"][:, -1] > _SIGMAS
         result["silent_failure"] = (failed & ~doubtful).astype(np.float64)
     return result
-
-
-def _chance(nees: Array, dof: Array) -> Array:
-    """Probability of a larger square per dimension (run,); zero without any."""
-    from scipy.stats import chi2
-
-    return np.where(dof > 0, chi2.sf(nees * dof, np.maximum(dof, 1)), 0.0)

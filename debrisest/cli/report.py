@@ -1,5 +1,6 @@
 """The command that writes all that was found into one file for a browser."""
 
+import os
 import shlex
 import sys
 from collections.abc import Sequence
@@ -14,6 +15,7 @@ from debrisest.cli.options import (
     CaseNames,
     Configs,
     EstimatorNames,
+    Jobs,
     Out,
     Plugins,
     Runs,
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 def report(
     configs: Configs,
     out: Out = RESULTS,
+    jobs: Jobs = None,
     runs: Runs = None,
     case: CaseNames = None,
     estimator: EstimatorNames = None,
@@ -50,7 +53,7 @@ def report(
     selection = select(scenarios, runs, case, estimator)
     _check_cases(scenarios, figures_of or ())
     shown = (figures_of or ()) if figures else None
-    path = write_report(scenarios, out, selection, settings or (), shown, to)
+    path = write_report(scenarios, out, selection, settings or (), shown, to, jobs)
     if not quiet:
         print(f"wrote {path}")
 
@@ -76,21 +79,27 @@ def write_report(
     settings: Sequence[str] = (),
     figures_of: Sequence[str] | None = (),
     to: Path | None = None,
+    jobs: int | None = None,
 ) -> Path:
     """Write the report; return its path. Tells which scenarios have no results.
 
     With the figures of some cases, or with one of each kind if none are named, or without (None).
+    Worker processes make the chapters, which are many figures each.
     """
     from debrisest.errors import UserError
     from debrisest.files import replacing
-    from debrisest.show.report.page import page
+    from debrisest.runner.executors import executor
+    from debrisest.show.report.page import environment, page
 
-    chapters = []
-    for scenario in scenarios:
-        if told := _chapter(scenario, out, selection, settings, figures_of):
-            chapters.append(told)
-        else:
+    environment()
+    with executor(min(jobs or os.cpu_count() or 1, len(scenarios))) as (pool, _):
+        asked = (out, selection, settings, figures_of)
+        each = [pool.submit(_chapter, scenario, *asked) for scenario in scenarios]
+        told = [chapter.result() for chapter in each]
+    for scenario, chapter in zip(scenarios, told):
+        if not chapter:
             print(f"left out of the report: {scenario.name}: no results", file=sys.stderr)
+    chapters = [chapter for chapter in told if chapter]
     if not chapters:
         names = shlex.join(named(scenarios, out, settings))
         raise UserError(f"no results that are up to date; run: debrisest sweep {names}")

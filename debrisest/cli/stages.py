@@ -108,7 +108,8 @@ def sweep(
     if not dry_run:
         wrong = show_tables(scenarios, out, selection, Format.RICH, check)
         if report:
-            print(f"report: {write_report(scenarios, out, selection, settings or ())}")
+            path = write_report(scenarios, out, selection, settings or (), jobs=jobs)
+            print(f"report: {path}")
         elif sys.stderr.isatty() and not quiet:
             of_runs = ["--runs", str(runs)] if runs else []
             changed = [text for setting in settings or () for text in ("--set", setting)]

@@ -1,9 +1,4 @@
-"""Datasets as an HDF5 file in memory, and back.
-
-They are flat float64 (names are text; images uint8) with units and dimension scales, compressed
-where that saves much, so that h5py and xarray (``engine="h5netcdf"``) read them without this
-package.
-"""
+"""Datasets of an HDF5 file in memory, looked at before they are taken for those of a step."""
 
 from collections.abc import Container, Mapping
 from io import BytesIO
@@ -15,13 +10,12 @@ from h5py import h5a, h5d, h5l, h5o, h5s
 from numpy.typing import NDArray
 
 from debrisest.arrays import Data
-from debrisest.results.packed import create_numbers
 from debrisest.results.told import require_as_told
 from debrisest.vocabulary import AXIS_LENGTH, COORDINATES, VOCABULARY, axes_of, has_runs
 
 _NUMBERS = (np.float64, np.uint8)
 _UNIT = np.dtype(object, metadata={"vlen": str})
-_NO_COORDINATE = b"This is a netCDF dimension but not a netCDF variable."
+NO_COORDINATE = b"This is a netCDF dimension but not a netCDF variable."
 
 
 class _Dataset(NamedTuple):
@@ -30,18 +24,6 @@ class _Dataset(NamedTuple):
     id: Any
     dtype: Any
     shape: tuple[int, ...]
-
-
-def image_of(data: Data, attributes: Mapping[str, Any], frames: Mapping[str, str]) -> bytes:
-    """Return an HDF5 file; ``frames`` becomes the attribute ``frame`` of the datasets it names."""
-    options = {"driver": "core", "backing_store": False, "libver": "latest", "track_order": True}
-    with h5py.File("image", "w", **options) as file:
-        file.attrs.update(attributes)
-        _write_data(file, data)
-        for name in data.keys() & frames.keys():
-            file[name].attrs["frame"] = frames[name]
-        file.flush()
-        return bytes(file.id.get_file_image())
 
 
 def as_stored(data: Data) -> Data:
@@ -113,11 +95,11 @@ def _dataset(file: Any, name: str) -> _Dataset | None:
     h5a.open(dataset, b"units").read(unit := np.empty((), _UNIT))
     if unit.item() != VOCABULARY[name].unit.encode():
         raise ValueError(f"{name} is not in {VOCABULARY[name].unit}")
-    _lengths(name, found.shape)
+    lengths(name, found.shape)
     return found
 
 
-def _lengths(name: str, shape: tuple[int, ...]) -> dict[str, int]:
+def lengths(name: str, shape: tuple[int, ...]) -> dict[str, int]:
     """Return the length of each axis of a dataset, or raise ValueError for one it cannot have."""
     lengths = dict(zip(axes_of(name, len(shape)), shape))
     for axis, length in lengths.items():
@@ -135,7 +117,7 @@ def _is_length(scale: Any) -> bool:
         return False
     name = h5a.open(scale, b"NAME")
     name.read(text := np.empty(name.shape, name.dtype))
-    return bool(text.item().startswith(_NO_COORDINATE))
+    return bool(text.item().startswith(NO_COORDINATE))
 
 
 def _values(dataset: _Dataset, part: slice = slice(None)) -> NDArray[Any]:
@@ -151,34 +133,7 @@ def _values(dataset: _Dataset, part: slice = slice(None)) -> NDArray[Any]:
     return np.array([text.decode() for text in value]) if value.dtype.kind == "O" else value
 
 
-def _write_data(file: Any, data: Data) -> None:
-    scales: dict[str, Any] = {}
-    data = as_stored(data)
-    for name in sorted(data, key=lambda name: name not in COORDINATES):
-        quantity, value = VOCABULARY[name], data[name]
-        dataset = _create(file, name, value)
-        dataset.attrs.update({"units": quantity.unit, "long_name": quantity.long_name})
-        if name in COORDINATES:
-            dataset.make_scale(name)
-            scales[name] = dataset
-            continue
-        for axis, (label, length) in enumerate(_lengths(name, value.shape).items()):
-            if label not in scales:
-                scales[label] = file.create_dataset(label, data=np.zeros(length))
-                scales[label].make_scale(f"{_NO_COORDINATE.decode()}{length:10d}")
-            dataset.dims[axis].attach_scale(scales[label])
-
-
 def _as_stored(value: Any) -> Any:
     if value.dtype.kind in "US":
         return np.array(value.tolist(), dtype=str)
     return np.ascontiguousarray(value, value.dtype if value.dtype == np.uint8 else np.float64)
-
-
-def _create(file: Any, name: str, value: Any) -> Any:
-    if value.dtype.kind in "US":
-        return file.create_dataset(name, data=value.tolist(), dtype=h5py.string_dtype())
-    if value.dtype == np.uint8:
-        one = (1,) * (value.ndim - 2) + value.shape[-2:]
-        return file.create_dataset(name, data=value, chunks=one, compression=1)
-    return create_numbers(file, name, value)

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from h5py import h5d, h5p, h5s, h5t
 from numpy.typing import NDArray
 
 from debrisest.arrays import Array
@@ -22,23 +23,31 @@ _PARTS = 16
 """A dataset has as many parts at least, so that a single epoch does not need all of it."""
 
 
-def create_numbers(file: Any, name: str, value: Array) -> Any:
-    """Return a new dataset of an open file that holds ``value (run, ...)``."""
-    parts = list(_parts(value))
-    if len(parts) < 2 or not _worth(value[parts[len(parts) // 2]]):
-        return file.create_dataset(name, data=value)
-    dataset = file.create_dataset(
-        name,
-        value.shape,
-        np.float64,
-        chunks=value[parts[0]].shape,
-        compression=_LEVEL,
-        shuffle=True,
-        fillvalue=np.nan,
-    )
-    for part in parts:
-        if not np.isnan(value[part]).all():
-            dataset[part] = value[part]
+def create(file: Any, name: str, value: NDArray[Any]) -> h5d.DatasetID:
+    """Return a new dataset of an open file: of numbers ``(run, ...)``, images or texts."""
+    properties = h5p.create(h5p.DATASET_CREATE)
+    properties.set_obj_track_times(False)
+    parts = list(_parts(value)) if value.dtype == np.float64 else []
+    if len(parts) > 1 and _worth(value[parts[len(parts) // 2]]):
+        properties.set_chunk(value[parts[0]].shape)
+        properties.set_fill_value(np.array(np.nan))
+        properties.set_shuffle()
+        properties.set_deflate(_LEVEL)
+        filled = [part for part in parts if not np.isnan(value[part]).all()]
+    else:
+        filled = parts = []
+    if value.dtype == np.uint8:
+        properties.set_chunk((1,) * (value.ndim - 2) + value.shape[-2:])
+        properties.set_deflate(_LEVEL)
+    kind, space = h5t.py_create(value.dtype, logical=True), h5s.create_simple(value.shape)
+    dataset = h5d.create(file, name.encode(), kind, space, properties)
+    if len(filled) == len(parts):
+        dataset.write(h5s.ALL, h5s.ALL, value)
+        return dataset
+    for _, epochs in filled:
+        part = np.ascontiguousarray(value[:, epochs])
+        space.select_hyperslab((0, epochs.start, *(0 for _ in part.shape[2:])), part.shape)
+        dataset.write(h5s.create_simple(part.shape), space, part)
     return dataset
 
 

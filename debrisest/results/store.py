@@ -17,7 +17,7 @@ from debrisest import compiled
 from debrisest.arrays import Data
 from debrisest.errors import UserError
 from debrisest.files import replacing
-from debrisest.results.image import check, data_of, frames_of, image_of, opened
+from debrisest.results.image import check, data_of, frames_of, opened
 from debrisest.results.sealed import (
     FORMAT,
     is_foreign,
@@ -27,6 +27,7 @@ from debrisest.results.sealed import (
     sealed,
 )
 from debrisest.results.told import forms, require_told
+from debrisest.results.written import image_of
 from debrisest.revision import commit
 from debrisest.vocabulary import VOCABULARY
 

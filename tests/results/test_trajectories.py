@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from debrisest.results import store, trajectories
-from debrisest.results.image import as_stored, image_of, opened
+from debrisest.results.image import as_stored, opened
 from debrisest.results.open import open_results
 from debrisest.results.trajectories import is_trajectory
+from debrisest.results.written import image_of
 from debrisest.runner.plan import Selection, plan
 from debrisest.scenario.load import load_scenario
 from debrisest.vocabulary import VOCABULARY

@@ -24,8 +24,7 @@ def pairs(before: Array, now: Array, noise: Array) -> tuple[IntArray, IntArray]:
     Both (run, sensor, detection, d), beside the target as it is expected.
     """
     apart = now[..., :, None, :] - before[..., None, :, :]
-    white = solve(2.0 * noise, apart[..., None])[..., 0]
-    square = (apart * white).sum(-1)
+    square = (apart * (apart @ solve(2.0 * noise, np.eye(len(noise))))).sum(-1)
     return tuple(
         ((least <= square) & (square < least + _NEAR)).sum((1, 2, 3)) for least in (0.0, _NEAR)
     )

@@ -10,12 +10,12 @@ from debrisest.filters.association.companions import pairs, unclaimed
 from debrisest.filters.association.evidence import (
     Beside,
     Evidence,
-    corrected,
     no_evidence,
     nothing_yet,
     predicted,
 )
-from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh, update
+from debrisest.filters.association.sensor import updated
+from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.runs import take
 from debrisest.filters.scan_model import ScanModel
@@ -164,9 +164,9 @@ def _look(
         predicted = shown[:, :, group] + (h[:, :, group] @ lag[:, :, None, :, None])[..., 0]
         innovation = scan[:, None, group] - predicted[..., None, :]
         part = Scan(innovation, h[:, :, group])
-        tracks, made, judged = update(tracks, part, model.noise, settings.gate, settings.weigh)
+        known = doubted[:, group], model.noise, settings.gate, settings.weigh
+        tracks, beside, more, judged = updated(tracks, beside, part, *known)
         seen = seen.plus(judged, shown.shape[-1])
-        beside, more = corrected(beside, made, doubted[:, group])
         evidence = evidence.plus(more)
         others[:, group] = unclaimed(innovation, judged)
     return tracks, beside, _Look(seen, evidence, others)

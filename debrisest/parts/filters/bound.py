@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.assessment.chi_square import upper_quantile
 from debrisest.assessment.consistency import normalized_square
 from debrisest.filters.association.single import associated
 from debrisest.filters.association.weights import Validation
@@ -111,12 +112,10 @@ def _judged(found: Estimates, error: Array, covariance: Array) -> Estimates:
 
     They do not where the filters' model does not follow the truth: then it bounds nothing.
     """
-    from scipy.stats import chi2
-
     n = error.shape[-1]
     test = SelfTest(
         normalized_square(error, covariance) / n,
-        float(chi2.isf(_CHANCE, n)) / n,
+        float(upper_quantile(_CHANCE, n)) / n,
         "this is no bound: its own squared errors are {value} of what it states, at most {limit} "
         "by chance; the model does not follow the truth",
     )

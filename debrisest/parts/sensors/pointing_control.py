@@ -44,6 +44,7 @@ _INPUTS = (
 
 _UNCERTAINTY = Uncertainty()
 _SHARED = 200  # runs that are simulated together where all are alike, for the sake of memory
+_DRAWN = 100
 
 
 class PointingControl(SimulationPart):
@@ -124,7 +125,7 @@ class PointingControl(SimulationPart):
     @property
     def runs_together(self) -> int:
         """Return how many runs share one loop."""
-        return 1 if self._drawn else _SHARED
+        return _DRAWN if self._drawn else _SHARED
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude, sections, exact pixels, and what the controller did.

@@ -121,6 +121,18 @@ def test_figures_of_another_case_can_be_asked_for(
     assert done.exit_code == 2 and "(did you mean fast?)" in done.stderr
 
 
+def test_chapters_made_by_workers_are_the_same(
+    small: Path, reference: Path, tmp_path: Path, cli: Callable
+) -> None:
+    other = small.with_name("other.yaml")
+    other.write_bytes(small.read_bytes())
+    asked = ("report", small, other, "--out", reference, "--estimator", "triad", "--to")
+    done = [cli(*asked, tmp_path / str(jobs), "--jobs", jobs) for jobs in (1, 2)]
+    assert [one.exit_code for one in done] == [0, 0], done[1].output
+    assert all("left out of the report: other: no results" in one.stderr for one in done)
+    assert (tmp_path / "1").read_bytes() == (tmp_path / "2").read_bytes()
+
+
 def test_the_provenance_is_told(small_report: str) -> None:
     told = {
         words(dt): words(dd) for dt, dd in zip(*(tree(small_report).iter(t) for t in ("dt", "dd")))
