@@ -11,6 +11,9 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.attitude.vectors import cross
 
+_NEWTON_STEPS = 30  # of which six are taken, and more only where two rotations are about as near
+_ABOVE = 1e-9  # of the norm of a matrix, by which its eigenvalue is missed: nothing is singular
+
 
 def multiply(p: Array, q: Array) -> Array:
     """Hamilton product ``p q``, ``(..., 4)``: the rotation ``q`` followed by ``p``."""
@@ -60,11 +63,31 @@ def from_matrix(matrix: Array) -> Array:
     The elements give all products ``4 q_i q_j``; the row of the largest component is used, so that
     no trace is singular.
     """
-    products = _products(matrix)
-    largest = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
-    row = np.take_along_axis(products, largest[..., None, None], axis=-2)[..., 0, :]
-    row = np.where(row[..., :1] < 0.0, -row, row)
-    return np.asarray(row / _length(row))
+    return _positive(_largest_row(_products(matrix)))
+
+
+def nearest(matrix: Array) -> Array:
+    """Unit quaternion ``(..., 4)``, scalar part not negative, of the rotation nearest to a matrix.
+
+    The attitude that fits correlated points best, as of `debrisest.attitude.rotation` by singular
+    values, some six times faster: Davenport's eigenvector (Markley, Mortari 2000), its eigenvalue
+    by Newton's steps from above. Of a matrix that two rotations are equally near to it is any.
+    """
+    scale = np.sqrt(np.sum(matrix * matrix, axis=(-2, -1), keepdims=True))
+    matrix = matrix / np.maximum(scale, np.finfo(np.float64).tiny)
+    davenport = _products(matrix) - np.eye(4)
+    linear, constant = -8.0 * np.linalg.det(matrix), np.linalg.det(davenport)
+    value = np.full(linear.shape, np.sqrt(3.0))
+    for _ in range(_NEWTON_STEPS):
+        square = value * value
+        slope = np.maximum(4.0 * value * (square - 1.0) + linear, 1e-8)
+        step = ((square - 2.0) * square + linear * value + constant) / slope
+        value -= np.maximum(step, 0.0)
+        if not np.any(step > 1e-13):
+            break
+    inverse = np.linalg.inv((value + _ABOVE)[..., None, None] * np.eye(4) - davenport)
+    row = _largest_row(inverse)[..., None]
+    return _positive((inverse @ (inverse @ row / _length(row[..., 0])[..., None]))[..., 0])
 
 
 def _components(q: Array) -> tuple[Array, Array, Array, Array]:
@@ -82,6 +105,17 @@ def _products(matrix: Array) -> Array:
         *(d - b, c + g, f + h, 1.0 - a - e + i),
     ]
     return _gathered(elements).reshape(*np.shape(a), 4, 4)
+
+
+def _largest_row(products: Array) -> Array:
+    """Row ``(..., 4)`` of matrices about ``q q^T`` with the largest component on the diagonal."""
+    largest = np.argmax(np.diagonal(products, axis1=-2, axis2=-1), axis=-1)
+    return np.take_along_axis(products, largest[..., None, None], axis=-2)[..., 0, :]
+
+
+def _positive(row: Array) -> Array:
+    """Unit quaternions along rows, scalar part not negative."""
+    return np.asarray(np.where(row[..., :1] < 0.0, -row, row) / _length(row))
 
 
 def _gathered(elements: list[Array]) -> Array:

@@ -11,14 +11,16 @@ import numpy as np
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.batch.evidence import Seen
+from debrisest.batch.row_median import row_median
 
 _LARGEST_TURN = np.radians(40.0)  # over half a window
-_FEWEST_EPOCHS = 5
+_FEWEST_EPOCHS, _FEWEST_OF_CUBIC = 5, 8
 _LEAST_REACH = 0.4  # of half a window, from the middle to the farther epochs of either side
 _MOST_WINDOWS = 60
 _FEWEST_WINDOWS = 12
 _REWEIGHTINGS = 3
 _CLEAN = 0.3  # of the windows, at least, without outliers
+_TOGETHER = 30_000  # epochs of windows that are fitted in one go
 _SPOILT = 3.0  # chi2/dof, over that of clean windows, of one with outliers
 
 
@@ -79,13 +81,12 @@ def _half_length(times: Array, q: Array) -> float:
 
 
 def _fits(times: Array, q: Array, information: Array, half: float) -> Local | None:
-    fits = [
-        _fit(times[middle], times[low:high], q[low:high], information[low:high])
-        for middle, low, high in _windows(times, half)
-    ]
-    if not fits:
+    windows = _windows(times, half)
+    if not len(windows):
         return None
-    time, attitude, rate, covariance, excess = (np.array(part) for part in zip(*fits))
+    blocks = np.array_split(windows, -(-int(np.ptp(windows[:, 1:], axis=1).sum()) // _TOGETHER))
+    fits = [_fitted(times, q, information, *block.T) for block in blocks]
+    time, attitude, rate, covariance, excess = (np.concatenate(part) for part in zip(*fits))
     clean = float(np.quantile(excess, _CLEAN))
     spoilt = np.where(excess > _SPOILT * clean, excess / max(clean, 1e-300), 1.0)
     covariance = covariance * spoilt[:, None, None]
@@ -111,37 +112,43 @@ def _windows(times: Array, half: float) -> IntArray:
     return np.stack([chosen, low[chosen], high[chosen]], axis=-1)
 
 
-def _fit(
-    middle: float, times: Array, q: Array, information: Array
-) -> tuple[float, Array, Array, Array, float]:
-    """Return middle, attitude, rate, its covariance and chi2/dof of one window."""
-    centre = q[np.argmin(np.abs(times - middle))]
-    turn = quaternion.log(quaternion.multiply(quaternion.conjugate(centre), q))
-    axes = quaternion.to_matrix(centre)
-    weight = axes.T @ information @ axes
-    span = np.abs(times - middle).max()
-    degree = 3 if len(times) >= 8 else 2
-    powers = ((times - middle) / span)[:, None] ** np.arange(degree + 1)
-    robust = np.ones(len(times))
+def _fitted(
+    times: Array, q: Array, information: Array, middle: IntArray, low: IntArray, high: IntArray
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Return middles, attitudes, rates, their covariances and chi2/dof of windows (window, ...)."""
+    inside = low[:, None] + np.arange(np.max(high - low)) < high[:, None]
+    epoch = np.minimum(low[:, None] + np.arange(inside.shape[1]), high[:, None] - 1)
+    time, centre = times[middle], q[middle]
+    turn = quaternion.log(quaternion.multiply(quaternion.conjugate(centre)[:, None], q[epoch]))
+    axes = quaternion.to_matrix(centre)[:, None]
+    plain = inside[..., None, None] * (np.swapaxes(axes, -1, -2) @ information[epoch] @ axes)
+    off = times[epoch] - time[:, None]
+    span = np.abs(off).max(axis=1)[:, None]
+    powers = (off / span)[..., None] ** np.arange(4)
+    cubic = high - low >= _FEWEST_OF_CUBIC
+    powers[~cubic, :, 3] = 0.0
+    robust = np.ones(inside.shape)
     for _ in range(_REWEIGHTINGS):
-        solution, hold, chi2 = _weighted(powers, turn, robust[:, None, None] * weight, weight)
-        typical = max(float(np.median(chi2)) / 2.4, 1e-300)
-        robust = 1.0 / (1.0 + chi2 / (9.0 * typical))
-    inverse = np.linalg.pinv(hold, 1e-12, hermitian=True)
-    dof = max(3.0 * len(times) - 3.0 * (degree + 1), 1.0)
-    excess = float(chi2.sum()) / dof
-    offset, rate = solution[0], solution[1] / span
-    attitude = quaternion.multiply(centre, quaternion.exp(offset))
-    return middle, attitude, rate, inverse[3:6, 3:6] / span**2, excess
+        solution, inverse, chi2 = _weighted(powers, turn, robust[..., None, None] * plain, plain)
+        typical = row_median(np.where(inside, chi2, np.nan))[:, None] / 2.4
+        robust = 1.0 / (1.0 + chi2 / (9.0 * np.maximum(typical, 1e-300)))
+    dof = np.maximum(3.0 * (high - low) - np.where(cubic, 12.0, 9.0), 1.0)
+    attitude = quaternion.multiply(centre, quaternion.exp(solution[:, 0]))
+    covariance = inverse[:, 3:6, 3:6] / span[..., None] ** 2
+    return time, attitude, solution[:, 1] / span, covariance, chi2.sum(axis=1) / dof
 
 
 def _weighted(
     powers: Array, turn: Array, weight: Array, plain: Array
 ) -> tuple[Array, Array, Array]:
-    """Return coefficients (degree + 1, 3), their information, and chi2 of each epoch."""
-    count = powers.shape[1]
-    hold = np.einsum("ka,kb,kij->aibj", powers, powers, weight).reshape(3 * count, 3 * count)
-    pull = np.einsum("ka,kij,kj->ai", powers, weight, turn).ravel()
-    solution = np.linalg.lstsq(hold, pull, rcond=1e-12)[0].reshape(count, 3)
+    """Return coefficients (window, 4, 3), their covariance, and chi2 of each epoch."""
+    windows, epochs = powers.shape[:2]
+    pairs = (powers[..., :, None] * powers[..., None, :]).reshape(windows, epochs, 16)
+    sums = np.swapaxes(pairs, 1, 2) @ weight.reshape(windows, epochs, 9)
+    hold = np.swapaxes(sums.reshape(windows, 4, 4, 3, 3), 2, 3).reshape(windows, 12, 12)
+    pull = np.swapaxes(powers, 1, 2) @ (weight @ turn[..., None])[..., 0]
+    inverse = np.linalg.pinv(hold, 1e-12, hermitian=True)
+    solution = (inverse @ pull.reshape(windows, 12, 1)).reshape(windows, 4, 3)
     residual = turn - powers @ solution
-    return solution, hold, np.einsum("ki,kij,kj->k", residual, plain, residual)
+    weighted = (plain @ residual[..., None])[..., 0]
+    return solution, inverse, np.sum(residual * weighted, axis=-1)

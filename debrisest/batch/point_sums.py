@@ -87,13 +87,11 @@ class KnownPoints:
     def seen(self) -> Seen:
         """Return the least-squares attitudes (Wahba) of epochs that tell all three directions."""
         product, hold, _ = self.sums
-        left, _, right = np.linalg.svd(product)
-        left[..., -1] *= np.linalg.det(left @ right)[..., None]
-        attitude = left @ right
+        q = quaternion.nearest(product)
+        attitude = quaternion.to_matrix(q)
         information = attitude @ hold @ np.swapaxes(attitude, -1, -2)
         tells = np.linalg.eigvalsh(hold)[:, 0] > _TELLS_A_TURN
-        q = np.where(tells[:, None], quaternion.from_matrix(attitude), np.nan)
-        return Seen(q, information)
+        return Seen(np.where(tells[:, None], q, np.nan), information)
 
     def residuals(self, q: Array) -> Array:
         """Return measured less expected points (time, feature, 3), m, centred, NaN unseen."""

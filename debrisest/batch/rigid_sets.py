@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
+from debrisest.batch.row_median import row_median
 from debrisest.batch.tracks import Tracks
 
 _TO_SIGMA = 1.4826  # from the median deviation of Gaussian noise
@@ -47,11 +48,11 @@ def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
         apart = points[enough][:, seen[i]] - points[i, seen[i]]
         distance = np.linalg.norm(apart, axis=-1)
         shown = np.where(seen[enough][:, seen[i]], distance, np.nan)
-        middle = _median(shown)
+        middle = row_median(shown)
         if model is not None:
             middle = np.linalg.norm(model - model[i], axis=-1)[enough]
         length[i, enough] = middle
-        noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * _median(np.abs(shown - middle[:, None]))
+        noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * row_median(np.abs(shown - middle[:, None]))
     return Pairs(length, noise, common)
 
 
@@ -59,13 +60,6 @@ def _by_feature(tracks: Tracks) -> tuple[BoolArray, Array]:
     """Return what is seen (feature, time) and where (feature, time, 3)."""
     seen, points = tracks.seen.T, np.swapaxes(tracks.points, 0, 1)
     return np.ascontiguousarray(seen), np.ascontiguousarray(points)
-
-
-def _median(values: Array) -> Array:
-    """Return the median of each row, of which some are NaN, but not all."""
-    ordered, count = np.sort(values, axis=-1), np.isfinite(values).sum(axis=-1)
-    rows = np.arange(len(values))
-    return np.asarray(0.5 * (ordered[rows, (count - 1) // 2] + ordered[rows, count // 2]))
 
 
 def noise_of(found: Pairs) -> float:

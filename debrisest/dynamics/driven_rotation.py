@@ -1,12 +1,12 @@
 """Rotation of a rigid body under a torque that depends on time and attitude."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
-from debrisest.attitude.vectors import matrix_of_cross
 
 Torque = Callable[[float, Array], Array]
 """Torque ``(3,)`` in body axes, N m, at a time, s, and a unit quaternion ``q_ib (4,)``."""
@@ -28,12 +28,16 @@ def driven(
     inverse = np.linalg.inv(inertia)
 
     def derivative(time: float, state: Array) -> Array:
-        q, rate = state[:4], state[4:]
-        if not np.abs(rate).max() <= FASTEST:
+        a, b, c, d, x, y, z = state.tolist()
+        if not (abs(x) <= FASTEST and abs(y) <= FASTEST and abs(z) <= FASTEST):
             raise ValueError(f"the body turns faster than {FASTEST:g} rad/s at {time:.3g} s")
-        acting = torque(time, quaternion.normalize(q))
-        spin = 0.5 * quaternion.multiply(q, np.concatenate([[0.0], rate]))
-        return np.concatenate([spin, inverse @ (acting - matrix_of_cross(rate) @ inertia @ rate)])
+        acting = torque(time, state[:4] / math.sqrt(a * a + b * b + c * c + d * d))
+        crossed = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        result = np.empty(7)
+        result[0], result[1] = 0.5 * (-b * x - c * y - d * z), 0.5 * (a * x + c * z - d * y)
+        result[2], result[3] = 0.5 * (a * y - b * z + d * x), 0.5 * (a * z + b * y - c * x)
+        result[4:] = inverse @ (acting - crossed @ inertia @ state[4:])
+        return result
 
     span = (0.0, max(float(times[-1]), 1.0))
     start = np.concatenate([q0, rate0])

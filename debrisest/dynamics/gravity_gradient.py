@@ -1,12 +1,12 @@
 """Rotation of a rigid body under the gravity-gradient torque of the Earth."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
-from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics.driven_rotation import driven
 from debrisest.dynamics.kepler import MU_EARTH
 
@@ -30,7 +30,8 @@ def tumble(
     def acting(time: float, q: Array) -> Array:
         r_i = position(time)
         r_b = quaternion.to_matrix(q).T @ r_i
-        gravity = 3.0 * mu / np.linalg.norm(r_i) ** 5 * matrix_of_cross(r_b) @ inertia @ r_b
-        return np.asarray(gravity + torque)
+        (x, y, z), (a, b, c) = r_b.tolist(), (inertia @ r_b).tolist()
+        crossed = np.array([y * c - z * b, z * a - x * c, x * b - y * a])
+        return np.asarray(3.0 * mu / math.dist(r_i, (0.0, 0.0, 0.0)) ** 5 * crossed + torque)
 
     return driven(times, q0, rate0, inertia, acting)

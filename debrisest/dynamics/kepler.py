@@ -1,10 +1,13 @@
 """Two-body motion around the Earth, in inertial axes (ECI)."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from debrisest.arrays import Array
 
 MU_EARTH = 3.986004418e14  # m^3/s^2
+_STEP = 1e-3  # rad, about, between states of which positions are made
 
 
 def state_from_elements(
@@ -93,6 +96,25 @@ def propagate(
         f[..., None] * start + g[..., None] * heading,
         f_dot[..., None] * start + g_dot[..., None] * heading,
     )
+
+
+def position_until(
+    end: float, position: Array, velocity: Array, mu: float = MU_EARTH
+) -> Callable[[float], Array]:
+    """Position (3,), m, at any one time from zero to ``end``, s, after a state (3,), fast.
+
+    By cubics between states that are a thousandth of the shortest radius apart, over its speed:
+    their error, r (n h)^4 / 384, is rounding.
+    """
+    from scipy.interpolate import CubicHermiteSpline
+
+    axis, eccentricity, _ = shape_and_anomaly(position, velocity, mu)
+    fastest = np.sqrt(mu / axis**3 * (1.0 + eccentricity) / (1.0 - eccentricity) ** 3)
+    times = np.linspace(0.0, end, 2 + int(end * fastest / _STEP))
+    spline: Callable[[float], Array] = CubicHermiteSpline(
+        times, *propagate(position, velocity, times, mu)
+    )
+    return spline
 
 
 def _anomaly_advance(mean_advance: Array, e_cos: Array, e_sin: Array) -> Array:

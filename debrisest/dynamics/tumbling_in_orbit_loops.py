@@ -8,6 +8,8 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.compiled import compiled
 
+Vectors = tuple[Array, Array, Array]
+"""Room for three vectors (3)."""
 _PARTS, _WEIGHTS = (0.5, 0.5, 1.0, 0.0), (1.0, 2.0, 2.0, 1.0)
 
 
@@ -29,8 +31,11 @@ def rotation(
     steps of the duration, s.
     """
     moved, errors = np.empty((len(start), last + 1, 7)), np.empty((len(start), last + 1, 6, 11))
-    turn, spin, radial = np.empty(4), np.empty(3), np.empty(3)
+    slope, radial = np.empty(7), np.empty(3)
+    turn, spin = slope[:4], slope[4:]
     by, at, total = np.empty((6, 11)), np.empty((6, 11)), np.empty((6, 11))
+    vectors = np.empty(3), np.empty(3), np.empty(3)
+    room = (np.empty((3, 11)), np.empty((3, 11)), np.empty((3, 3)))
     for run in range(len(start)):
         body = (inertia[run], inverse[run], derivative[run])
         x, new, tried, now = start[run].copy(), np.empty(7), np.empty(7), np.eye(6, 11)
@@ -42,16 +47,16 @@ def rotation(
             new[:], tried[:] = x, x
             total[:], at[:] = now, now
             for i in range(4):
-                _slopes(tried, body, pace, turn, spin, radial)
-                _variation(tried[4:], radial, spin, body, pace[1], at, by)
-                tried[:4] = x[:4] + _PARTS[i] * duration * turn
-                tried[4:] = x[4:] + _PARTS[i] * duration * spin
-                new[:4] += _WEIGHTS[i] * duration / 6.0 * turn
-                new[4:] += _WEIGHTS[i] * duration / 6.0 * spin
+                _slopes(tried, body, pace, turn, spin, radial, vectors)
+                _variation(tried[4:], radial, spin, body, pace[1], at, by, vectors, room)
+                part, weight = _PARTS[i] * duration, _WEIGHTS[i] * duration / 6.0
+                for a in range(7):
+                    tried[a] = x[a] + part * slope[a]
+                    new[a] += weight * slope[a]
                 for a in range(6):
                     for b in range(11):
-                        total[a, b] += _WEIGHTS[i] * duration / 6.0 * by[a, b]
-                        at[a, b] = now[a, b] + _PARTS[i] * duration * by[a, b]
+                        total[a, b] += weight * by[a, b]
+                        at[a, b] = now[a, b] + part * by[a, b]
             new[:4] /= np.sqrt(np.sum(new[:4] ** 2))
             x[:], now[:] = new, total
     return moved, errors
@@ -65,6 +70,7 @@ def _slopes(
     turn: Array,
     spin: Array,
     radial: Array,
+    vectors: Vectors,
 ) -> None:
     """Write the derivatives of attitude (4) and rate (3), and the radial direction."""
     a, b, c, d, u, v, w = x
@@ -79,10 +85,9 @@ def _slopes(
     r, s, t = relative
     turn[0], turn[1] = -0.5 * (b * r + c * s + d * t), 0.5 * (a * r + c * t - d * s)
     turn[2], turn[3] = 0.5 * (a * s + d * r - b * t), 0.5 * (a * t + b * s - c * r)
-    moment, pull = np.empty(3), np.empty(3)
+    moment, pull, torque = vectors
     _applied(body[0], x[4:], moment)
     _applied(body[0], radial, pull)
-    torque = np.empty(3)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         torque[i] = gravity * (radial[j] * pull[k] - radial[k] * pull[j])
@@ -99,36 +104,63 @@ def _variation(
     gravity: float,
     at: Array,
     by: Array,
+    vectors: Vectors,
+    room: tuple[Array, Array, Array],
 ) -> None:
     """Write the derivative (6, 11) of errors ``at (6, 11)``."""
-    inertia, inverse, derivative = body
-    torque, dw, do, ds = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    turned, moment, pull, moved = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    torque, slope, by_radial = room
+    _torques(w, o, spin, body, gravity, torque, by_radial, vectors)
+    inverse = body[1]
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        for b in range(11):
+            slope[i, b] = inverse[i, 0] * torque[0, b] + inverse[i, 1] * torque[1, b]
+            slope[i, b] += inverse[i, 2] * torque[2, b]
+        for b in range(11):
+            by[i, b] = at[3 + i, b] - w[j] * at[k, b] + w[k] * at[j, b]
+            by[3 + i, b] = slope[i, b] if b >= 6 else 0.0
+        for c in range(6):
+            for b in range(11):
+                by[3 + i, b] += slope[i, c] * at[c, b]
+
+
+@compiled
+def _torques(
+    w: Array,
+    o: Array,
+    spin: Array,
+    body: tuple[Array, Array, Array],
+    gravity: float,
+    torque: Array,
+    by_radial: Array,
+    vectors: Vectors,
+) -> None:
+    """Write the derivative (3, 11) of the torque, with the inertial one, by errors."""
+    inertia, _, derivative = body
+    moment, pull, held = vectors
     _applied(inertia, w, moment)
     _applied(inertia, o, pull)
-    for b in range(11):
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        for c in range(3):
+            by_radial[i, c] = gravity * (o[j] * inertia[k, c] - o[k] * inertia[j, c])
+            torque[i, 3 + c] = w[k] * inertia[j, c] - w[j] * inertia[k, c]
+        by_radial[i, j] += gravity * pull[k]
+        by_radial[i, k] -= gravity * pull[j]
+        torque[i, 3 + j] -= moment[k]
+        torque[i, 3 + k] += moment[j]
+    for c in range(3):
+        d, e = (c + 1) % 3, (c + 2) % 3
+        for i in range(3):
+            torque[i, c] = by_radial[i, d] * o[e] - by_radial[i, e] * o[d]
+    for b in range(5):
+        _applied(derivative[b], w, moment)
+        _applied(derivative[b], o, pull)
+        _applied(derivative[b], spin, held)
         for i in range(3):
             j, k = (i + 1) % 3, (i + 2) % 3
-            by[i, b] = at[3 + i, b] - w[j] * at[k, b] + w[k] * at[j, b]
-            turned[i] = o[j] * at[k, b] - o[k] * at[j, b]
-        _applied(inertia, at[3:, b], dw)
-        _applied(inertia, turned, do)
-        ds[:] = 0.0
-        if b >= 6:
-            _applied(derivative[b - 6], w, moved)
-            dw += moved
-            _applied(derivative[b - 6], o, moved)
-            do += moved
-            _applied(derivative[b - 6], spin, ds)
-        for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
-            torque[i] = gravity * (
-                turned[j] * pull[k] - turned[k] * pull[j] + o[j] * do[k] - o[k] * do[j]
-            )
-            torque[i] -= at[3 + j, b] * moment[k] - at[3 + k, b] * moment[j]
-            torque[i] -= w[j] * dw[k] - w[k] * dw[j] + ds[i]
-        _applied(inverse, torque, moved)
-        by[3, b], by[4, b], by[5, b] = moved[0], moved[1], moved[2]
+            pulled = gravity * (o[j] * pull[k] - o[k] * pull[j])
+            torque[i, 6 + b] = pulled - (w[j] * moment[k] - w[k] * moment[j]) - held[i]
 
 
 @compiled

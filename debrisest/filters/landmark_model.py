@@ -99,6 +99,8 @@ class LandmarkModel(NamedTuple):
     gauge: Callable[[Array, Array], Array] | None = None
     """(core, points (run, N, 3)) -> errors (run, n_c + 3 N, g) in g directions that no measurement
     tells; none where the start is one of the model's own, which holds them."""
+    shown_by: IntArray | slice = slice(None)
+    """Errors of the core, of their own epoch, that rows depend on."""
     directions: int = 2
     """Leading components of a landmark, its pixels, without which `place` puts it nowhere."""
 

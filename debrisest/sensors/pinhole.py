@@ -33,6 +33,15 @@ def derivative(point_c: Array, scale: Array | float) -> Array:
     return np.asarray(per_depth[..., None, None] * result)
 
 
+def derivative_through(point_c: Array, scale: Array | float, matrix: Array) -> Array:
+    """`derivative` times matrices ``(..., 3, n)``: by what moves the point as they have it."""
+    depth = np.where(point_c[..., 2:] == 0.0, np.nan, point_c[..., 2:])
+    along = (point_c[..., :2] / depth)[..., None] * matrix[..., 2:, :]
+    return np.asarray(
+        (np.asarray(scale)[..., None] / depth)[..., None] * (matrix[..., :2, :] - along)
+    )
+
+
 def in_view(point_c: Array, pixel: Array, half_size: Array) -> BoolArray:
     """Return where points ``(..., 3)`` are in front and their pixels inside ``half_size (2,)``.
 

@@ -130,3 +130,28 @@ def test_nan_in_gives_nan_out_without_warnings() -> None:
         np.testing.assert_array_equal(np.isfinite(result).all(axis=-1), seen)
         assert np.isnan(result[1]).all()
     assert np.isnan(quaternion.normalize(np.zeros(4))).all()
+
+
+@pytest.mark.parametrize("points", [3, 4, 9])
+def test_nearest_to_a_correlation_aligns_vectors(points: int) -> None:
+    random = np.random.default_rng(points)
+    body = random.normal(size=(40, points, 3))
+    body -= body.mean(axis=1, keepdims=True)
+    turned = np.stack([r.apply(b) for r, b in zip(Rotation.random(40, random), body)])
+    seen = turned + 0.05 * random.normal(size=body.shape)
+    found = quaternion.nearest(np.swapaxes(seen, -1, -2) @ body)
+    for q, a, b in zip(found, seen, body):
+        theirs = quaternion.from_matrix(Rotation.align_vectors(a, b)[0].as_matrix())
+        assert quaternion.angle_between(q, theirs) < 1e-7
+
+
+def test_nearest_is_exact_at_half_turns_and_proper_at_mirrors() -> None:
+    half_turns = np.array([np.diag(d) for d in ([1, -1, -1], [-1, 1, -1], [-1, -1, 1])], float)
+    np.testing.assert_allclose(quaternion.nearest(half_turns), np.eye(4)[1:], atol=1e-12)
+    mirrored = np.diag([3.0, 2.0, -1.0])
+    np.testing.assert_allclose(quaternion.nearest(mirrored), np.eye(4)[0], atol=1e-12)
+
+
+def test_nearest_to_what_tells_no_attitude_is_some_rotation() -> None:
+    lines = np.array([np.zeros((3, 3)), np.outer([1.0, 2.0, 3.0], [0.0, 1.0, 1.0])])
+    np.testing.assert_allclose(np.linalg.norm(quaternion.nearest(lines), axis=-1), 1.0, rtol=1e-12)

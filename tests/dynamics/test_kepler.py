@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 from debrisest.arrays import Array
 from debrisest.dynamics.kepler import (
     MU_EARTH,
+    position_until,
     propagate,
     shape_and_anomaly,
     state_from_elements,
@@ -124,3 +125,12 @@ def test_shape_and_anomaly_are_those_of_the_elements(
     assert found[0] == pytest.approx(axis, rel=1e-9)
     assert found[1] == pytest.approx(eccentricity, rel=1e-8)
     assert found[2] == pytest.approx(anomaly, abs=1e-8)
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.01, 0.3, 0.8])
+def test_one_position_at_a_time_is_that_of_all(eccentricity: float) -> None:
+    position, velocity = state_from_elements(1.2e7, eccentricity, 1.7, 0.4, 2.0, 3.5)
+    times = np.linspace(0.0, 30000.0, 501)
+    at = position_until(30000.0, position, velocity)
+    expected = propagate(position, velocity, times)[0]
+    np.testing.assert_allclose([at(time) for time in times], expected, atol=1e-14 * 1.2e7)

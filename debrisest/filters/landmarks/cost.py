@@ -112,7 +112,7 @@ def cost(
     total = _Part(prior_value, prior.information, gradient, 0, 0, 0, 0.0, 0)
     for first in range(0, len(frames), _BLOCK):
         part = frames[first : first + _BLOCK]
-        by_start = transitions[:, part] @ by_parameters[:, None]
+        by_start = transitions[:, part][..., model.shown_by, :] @ by_parameters[:, None]
         seen = observed.at(slice(None), part)
         rows = model.rows(cores[:, part], at.points[:, None], part)
         found = _of_frames(model, rows, seen, at, by_start, robust)
@@ -200,54 +200,54 @@ def _loss(squares: Array, robust: bool) -> Array:
 def _landmark_terms(
     model: LandmarkModel, rows: Rows, weight: Array, residual: Array, by_start: Array
 ) -> tuple[Array, Array, Array]:
-    """Information and gradient of the landmarks' rows, and what shared noise explains of them."""
+    """Information and gradient of the landmarks' rows, and what shared noise explains of them.
+
+    A frame's rows are first summed in the few errors of its own core that they depend on.
+    """
     runs, frames, points, each = residual.shape
     n_x = by_start.shape[-1]
     scale = (weight / model.sigma)[..., None]
-    flat = (rows.by_core * scale).reshape(runs, frames, points * each, model.errors)
-    to_start = (flat @ by_start).reshape(runs, frames, points, each, n_x)
-    by_point, weighted = rows.by_point * scale, weight * residual
+    by_core, by_point = rows.by_core[..., model.shown_by] * scale, rows.by_point * scale
+    flat = by_core.reshape(runs, frames, points * each, by_core.shape[-1])
+    weighted = weight * residual
+    line = weighted.reshape(runs, frames, points * each, 1)
+    start = by_start.reshape(runs, -1, n_x)
+    held = (_product(flat, flat) @ by_start).reshape(start.shape)
+    crossed = np.moveaxis(_product(by_point, by_core), 1, 3).reshape(runs, 3 * points, -1)
+    apart = np.moveaxis(np.concatenate([by_point, weighted[..., None]], axis=-1), 2, 1)
+    squares = _product(*2 * [apart.reshape(runs, points, frames * each, 4)])[..., :3, :]
     n = n_x + 3 * points
     information, gradient = np.zeros((runs, n, n)), np.zeros((runs, n))
-    count = frames * points * each
-    rest = to_start.reshape(runs, count, n_x)
-    information[:, :n_x, :n_x] = _product(rest, rest)
-    gradient[:, :n_x] = _product(rest, weighted.reshape(runs, count, 1))[..., 0]
-    both = np.concatenate([to_start, by_point, weighted[..., None]], axis=-1)
-    both = np.ascontiguousarray(np.moveaxis(both, 2, 1))
-    both = both.reshape(runs, points, frames * each, n_x + 4)
-    products = _product(both[..., n_x : n_x + 3], both)
-    for i in range(points):
-        block = slice(n_x + 3 * i, n_x + 3 * i + 3)
-        information[:, block, :n_x] = products[:, i, :, :n_x]
-        information[:, :n_x, block] = np.swapaxes(products[:, i, :, :n_x], -1, -2)
-        information[:, block, block] = products[:, i, :, n_x : n_x + 3]
-        gradient[:, block] = products[:, i, :, -1]
+    information[:, :n_x, :n_x] = _product(start, held)
+    information[:, n_x:, :n_x] = crossed @ start
+    information[:, :n_x, n_x:] = np.swapaxes(information[:, n_x:, :n_x], -1, -2)
+    gradient[:, :n_x] = _product(start, _product(flat, line).reshape(runs, -1, 1))[..., 0]
+    among = n_x + np.arange(3 * points).reshape(points, 3)
+    information[:, among[:, :, None], among[:, None, :]] = squares[..., :3]
+    gradient[:, among] = squares[..., 3]
     if rows.shared.shape[-1] == 0:
         return information, gradient, np.zeros(runs)
     shared = rows.shared * scale
-    return _without_shared(information, gradient, to_start, by_point, weighted, shared)
+    causes = shared.reshape(*flat.shape[:-1], shared.shape[-1])
+    by_points = np.moveaxis(_product(shared, by_point), -2, -3)
+    right = [
+        _product(causes, flat) @ by_start,
+        by_points.reshape(*by_points.shape[:-2], 3 * points),
+        _product(causes, line),
+    ]
+    return _without_shared(information, gradient, causes, np.concatenate(right, axis=-1))
 
 
 def _without_shared(
-    information: Array,
-    gradient: Array,
-    to_start: Array,
-    by_point: Array,
-    weighted: Array,
-    shared: Array,
+    information: Array, gradient: Array, causes: Array, right: Array
 ) -> tuple[Array, Array, Array]:
-    """Take out what the frames' shared noise, unknowns of unit variance, makes uncertain."""
-    runs, frames, points, each, causes = shared.shape
-    flat = shared.reshape(runs, frames, points * each, causes)
-    total = np.eye(causes) + _product(flat, flat)
-    right = [
-        _product(flat, to_start.reshape(runs, frames, points * each, to_start.shape[-1])),
-        np.moveaxis(_product(shared, by_point), -2, -3).reshape(runs, frames, causes, 3 * points),
-        _product(flat, weighted.reshape(runs, frames, points * each, 1)),
-    ]
-    half = np.linalg.solve(np.linalg.cholesky(total), np.concatenate(right, axis=-1))
-    half = half.reshape(runs, frames * causes, half.shape[-1])
+    """Take out what the frames' shared noise, unknowns of unit variance, makes uncertain.
+
+    ``right (run, frame, cause, n + 1)`` are the products of the causes with rows and residuals.
+    """
+    total = np.eye(causes.shape[-1]) + _product(causes, causes)
+    half = np.linalg.solve(np.linalg.cholesky(total), right)
+    half = half.reshape(len(half), -1, half.shape[-1])
     known, seen = half[..., :-1], half[..., -1:]
     return (
         information - _product(known, known),
@@ -264,7 +264,8 @@ def _common_terms(
     squares = np.where(seen.common_seen, difference, 0.0) ** 2
     weight = seen.common_seen * (_cauchy(squares) if robust else 1.0)
     residual = np.where(seen.common_seen, weight * difference, 0.0)
-    flat = (rows.common_by_core * (weight / model.common_sigma)[..., None]) @ by_start
+    by_core = rows.common_by_core[..., model.shown_by]
+    flat = (by_core * (weight / model.common_sigma)[..., None]) @ by_start
     count = residual.shape[1] * residual.shape[2]
     flat = flat.reshape(len(flat), count, by_start.shape[-1])
     gradient = _product(flat, residual.reshape(len(flat), count, 1))[..., 0]

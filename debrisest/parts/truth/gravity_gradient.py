@@ -8,7 +8,7 @@ from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics.gravity_gradient import tumble
-from debrisest.dynamics.kepler import propagate
+from debrisest.dynamics.kepler import position_until
 from debrisest.parts.truth.each_run import each_body
 from debrisest.roles import SimulationPart, UnitQuaternion, Vector3
 
@@ -18,7 +18,7 @@ class GravityGradient(SimulationPart):
 
     needs = ("true_inertia_b", "orbit_position", "orbit_velocity")
     truths = ("true_q_ib", "true_rate_b")
-    version = 2
+    version = 3
     kind: Literal["gravity_gradient"]
     q_ib: UnitQuaternion = [1.0, 0.0, 0.0, 0.0]
     """Attitude at time zero."""
@@ -41,7 +41,7 @@ class GravityGradient(SimulationPart):
             np.array(self.q_ib),
             np.radians(self.rate_deg_s),
             inertia,
-            lambda time: propagate(*orbit, np.array([time]))[0][0],
+            position_until(float(clock.times[-1]), *orbit),
             np.array(self.torque_n_m),
         )
         return {"true_q_ib": q_ib, "true_rate_b": rate_b}

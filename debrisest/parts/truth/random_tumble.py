@@ -9,7 +9,7 @@ from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
 from debrisest.dynamics.gravity_gradient import tumble
-from debrisest.dynamics.kepler import propagate
+from debrisest.dynamics.kepler import position_until
 from debrisest.roles import Limits, NonNegative, SimulationPart
 
 
@@ -18,24 +18,22 @@ class RandomTumble(SimulationPart):
 
     needs = ("true_inertia_b", "orbit_position", "orbit_velocity")
     truths = ("true_q_ib", "true_rate_b")
+    version = 2
     kind: Literal["random_tumble"]
     rate_deg_s: Limits[NonNegative]
     """Limits of the rate at time zero."""
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude and rate of the body axes of each run."""
-        position, velocity = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+        orbit = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+        position = position_until(float(clock.times[-1]), *orbit)
         q_ib = quaternion.normalize(draws.normal(Stream.TRUTH, (4,)))
         axis = draws.normal(Stream.TRUTH, (3,))
         axis /= np.linalg.norm(axis, axis=-1, keepdims=True)
         low, high = np.radians(self.rate_deg_s)
         rate = (low + (high - low) * draws.uniform(Stream.TRUTH, (1,))) * axis
         motions = [
-            tumble(
-                clock.times,
-                *start,
-                lambda time: propagate(position, velocity, np.array([time]))[0][0],
-            )
+            tumble(clock.times, *start, position)
             for start in zip(q_ib, rate, data["true_inertia_b"])
         ]
         attitudes, rates = zip(*motions)

@@ -74,6 +74,7 @@ def doubted(known: CameraRangeGeometry, model: LandmarkModel) -> LandmarkModel:
         start=start,
         trajectory=trajectory,
         rows=rows,
+        shown_by=np.append(np.arange(n_c)[model.shown_by], n_c + np.arange(count)),
         doubted=None,
     )
 

@@ -52,6 +52,7 @@ def landmark_model(known: CameraRangeGeometry) -> LandmarkModel:
         difference=motion.difference,
         of=lambda runs: landmark_model(known.of(runs)),
         gauge=turn_of_axes,
+        shown_by=np.r_[ATTITUDE_ERROR, POSITION_ERROR, CORE_ERRORS : CORE_ERRORS + known.extras],
     )
 
 
@@ -60,16 +61,17 @@ def rows(known: CameraRangeGeometry, cores: Array, points: Array, epochs: IntArr
     to_camera, turn, seen_from, arm = _geometry(known, cores, points, epochs)
     point = seen_from.copy()
     point[..., 2] = np.maximum(point[..., 2], _NEAREST)
-    by_view = pinhole.derivative(point, known.focal)
-    by_point = by_view @ turn[..., None, :, :]
+    by_point = pinhole.derivative_through(point, known.focal, turn[..., None, :, :])
+    by_position = _by_position(known, cores, to_camera, arm)
     n_c = CORE_ERRORS + known.extras
-    by_core = np.zeros((*by_view.shape[:-1], n_c))
+    by_core = np.zeros((*by_point.shape[:-1], n_c))
     by_core[..., ATTITUDE_ERROR] = cross(points[..., None, :], by_point)
-    by_core[..., POSITION_ERROR] = by_view @ _by_position(known, cores, to_camera, arm)
-    by_bias = by_view @ matrix_of_cross(point)
+    by_core[..., POSITION_ERROR] = pinhole.derivative_through(point, known.focal, by_position)
+    noisy, by_bias = known.attitude_sigma > 0.0, by_point[..., :0]
+    if noisy or known.camera_bias:
+        by_bias = pinhole.derivative_through(point, known.focal, matrix_of_cross(point))
     if known.camera_bias:
         by_core[..., -3:] = by_bias
-    noisy = known.attitude_sigma > 0.0
     found = Rows(
         shown=pinhole.project(point, known.focal),
         by_core=by_core,
