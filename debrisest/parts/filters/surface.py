@@ -51,7 +51,7 @@ class Surface(FilterPart):
 
     takes = "shape_model"
     makes_start = True
-    version = 2
+    version = 3
     libraries = ("cv2", "pycolmap", "skimage")
     kind: Literal["surface"]
     method: Method = "fusion"
