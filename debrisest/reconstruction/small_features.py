@@ -22,32 +22,32 @@ _USUAL_PX = 0.2
 """How far small features are off; beyond this they count less."""
 
 
-def with_small_features(job: Job, model: Any) -> Any:
-    """Return a copy of a structure with the smaller half of each image's features, adjusted."""
-    copy = job.colmap.Reconstruction(model)
-    with job.colmap.Database.open(job.database) as opened:
-        keypoints = {number: opened.read_keypoints(number) for number in copy.images}
-    for number, image in copy.images.items():
-        _keep_small(copy, number, _scales(image, np.asarray(keypoints[number])))
-    options = _options(job)
-    options.refine_focal_length = job.how.calibrate
-    job.colmap.bundle_adjustment(copy, options)
-    return copy
+def placed_by_small_features(job: Job, model: Any) -> Any:
+    """Return a structure whose poses are those of the smaller half of each image's features.
 
-
-def placed_by(job: Job, model: Any) -> Any:
-    """Return a structure of small features, adjusted so that those that are off count less.
-
-    The camera stays what it is.
+    The camera stays what it is. Points of large features come back with the poses that were found.
     """
-    options = _options(job)
-    options.ceres.loss_function_type = job.colmap.LossFunctionType.CAUCHY
-    options.ceres.loss_function_scale = _USUAL_PX
+    small = job.colmap.Reconstruction(model)
+    with job.colmap.Database.open(job.database) as opened:
+        keypoints = {number: opened.read_keypoints(number) for number in small.images}
+    for number, image in small.images.items():
+        _keep_small(small, number, _scales(image, np.asarray(keypoints[number])))
+    job.colmap.bundle_adjustment(small, _options(job))
+    job.colmap.bundle_adjustment(small, _options(job, robust=True))
+    return _with_all_points(job, model, small)
+
+
+def _with_all_points(job: Job, model: Any, placed: Any) -> Any:
+    """Return the structure with poses of another one, and its points adjusted to them."""
+    for number, frame in placed.frames.items():
+        model.frames[number].rig_from_world = frame.rig_from_world
+    options = _options(job, robust=True)
+    options.refine_rig_from_world = False
     job.colmap.bundle_adjustment(model, options)
     return model
 
 
-def _options(job: Job) -> Any:
+def _options(job: Job, robust: bool = False) -> Any:
     options = job.colmap.BundleAdjustmentOptions(
         refine_focal_length=False,
         refine_principal_point=False,
@@ -56,6 +56,9 @@ def _options(job: Job) -> Any:
         print_summary=False,
     )
     options.ceres.solver_options.num_threads = threads()
+    if robust:
+        options.ceres.loss_function_type = job.colmap.LossFunctionType.CAUCHY
+        options.ceres.loss_function_scale = _USUAL_PX
     return options
 
 

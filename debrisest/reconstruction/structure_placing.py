@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from debrisest.reconstruction.self_calibration import bent_as_told, lens_of
-from debrisest.reconstruction.small_features import placed_by, with_small_features
+from debrisest.reconstruction.small_features import placed_by_small_features
 from debrisest.reconstruction.structure import CAMERAS, Lens
 from debrisest.reconstruction.structure_job import Job, tell, threads
 
@@ -36,11 +36,10 @@ def model_and_lens(job: Job) -> tuple[Any, Lens]:
         model = _model(job) or model
     if model is None:
         return model, lens
-    model = with_small_features(job, model)
     if job.how.calibrate:
-        model, lens = bent_as_told(job.colmap, model, lens_of(job.colmap, model))
+        model, lens = bent_as_told(job.colmap, model, lens)
     lens = lens._replace(focal_spread=float(np.hypot(lens.focal_spread, _scatter(told))))
-    return placed_by(job, model), lens
+    return placed_by_small_features(job, model), lens
 
 
 def _start_from(job: Job, lens: Lens) -> None:
