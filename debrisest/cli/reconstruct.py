@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _CALIBRATION = "calibration.yaml"
 _PLACES = "*_par.txt"
+_MASKS = ("masks", "mask", "silhouettes", "silhouette")
 _MOST = 75
 """Images that are taken where nothing else is said: more cost hours and tell little more."""
 
@@ -53,6 +54,16 @@ def reconstruct(
         int | None,
         Option("--every", min=1, help=f"Take one image of so many (default: {_MOST} at most)."),
     ] = None,
+    masks: Annotated[
+        Path | None,
+        Option(
+            "--masks",
+            help="Folder of masks, white: the body (default: one of that name, in or beside it).",
+        ),
+    ] = None,
+    no_support: Annotated[
+        bool, Option("--no-support", help="Do not look for a table under the body.")
+    ] = False,
     reference: Annotated[
         Path | None, Option("--reference", help="A CAD mesh to lay the body onto, and to compare.")
     ] = None,
@@ -85,12 +96,15 @@ def reconstruct(
             "known_length_sigma_m": known_length_sigma_m,
         }
     folder = out or RESULTS / given.resolve().stem
-    keys = {
+    keys: dict[str, Any] = {
         "every": every or _thinned(given),
         "field_of_view_deg": field_of_view_deg,
         "widest_px": widest_px,
     }
-    text = _scenario(given, camera, keys, problem, folder)
+    masks = masks or _masks_of(given)
+    if masks is not None:
+        keys["masks"] = relative_to(folder, str(masks))
+    text = _scenario(given, camera, keys, problem, folder, no_support)
     config = write_new(folder / f"{folder.name}.yaml", text, force)
     (scenario,) = load_all([config], None, None)
     data = _run(scenario, folder, force, quiet)
@@ -110,6 +124,23 @@ def _thinned(images: Path) -> int:
     if every > 1:
         print(f"note: one of {every} of the {count} images is taken; --every 1 takes them all")
     return max(every, 1)
+
+
+def _masks_of(images: Path) -> Path | None:
+    """Return where masks of images are, and say it; None where there are none."""
+    from debrisest.vision.image_files import count_images, has_masks
+
+    if not images.is_dir():
+        return None
+    places = [place / name for place in (images, images.parent) for name in _MASKS]
+    there = [place for place in places if place.is_dir() and place.resolve() != images.resolve()]
+    alike = [place for place in there if count_images(place) == count_images(images)]
+    found = images if has_masks(images) else next(iter(alike), None)
+    if found is not None:
+        print(f"note: the masks in {found} tell the body from what is behind it")
+    elif there:
+        print(f"note: {there[0]} has not a mask for each image, and is not taken")
+    return found
 
 
 def _require_positive(**values: float | None) -> None:
@@ -152,7 +183,12 @@ def _compare(data: "Data", reference: Path | None) -> None:
 
 
 def _scenario(
-    images: Path, camera: Path | None, keys: dict[str, Any], problem: dict[str, Any], folder: Path
+    images: Path,
+    camera: Path | None,
+    keys: dict[str, Any],
+    problem: dict[str, Any],
+    folder: Path,
+    no_support: bool,
 ) -> str:
     """Return a scenario for ``folder`` as YAML."""
     import yaml
@@ -168,6 +204,7 @@ def _scenario(
     measured |= {key: value for key, value in keys.items() if value is not None}
     if calibration is not None:
         measured["camera"] = relative_to(folder, str(calibration))
+    surface = {"kind": "surface", "outline": "either"}
     scenario = {
         "title": f"Shape of the body in {images.name}",
         "measured": measured,
@@ -175,7 +212,7 @@ def _scenario(
             "shape": {
                 "recovery": {"kind": "structure_from_motion", "leave_out": "still_features"},
                 "problem": {"kind": "constant_density_shape", **problem},
-                "filter": {"kind": "surface", "outline": "either"},
+                "filter": surface | ({"support": "none"} if no_support else {}),
             }
         },
     }

@@ -26,6 +26,8 @@ _COLOURED, _SHADES = 12.0, (0.5, 1.15)
 _BESIDE, _LOSSY_GREY = 0.2, 3.0
 """Of photographs, in which compression leaves waves beside strong edges."""
 BORDER_PX = 4
+_STANDS_OUT = "what differs from a plain backdrop, which the edges of the images show"
+_MOVES = "what differs from what each pixel shows most steadily"
 
 Smooth = NDArray[np.float32]
 
@@ -36,6 +38,8 @@ class Behind(NamedTuple):
     levels: Array
     """(channel, row, column)."""
     contrast: float
+    said: str
+    """What the body is then, in words."""
     beside: float = 0.0
     """Share of the contrast nearby that a pixel of the body has at least."""
 
@@ -57,12 +61,12 @@ def readings(channels: Sequence[Smooth]) -> Iterator[Behind]:
     level, backdrop = max(_SIGMAS * float(sigma), _LEAST_GREY), _backdrop(channels)
     always_body = spread > np.array([each.most for each in found])[:, None, None]
     if backdrop is None:
-        yield Behind(np.where(always_body, -1e3, steady), level)
+        yield Behind(np.where(always_body, -1e3, steady), level, _MOVES)
         return
     own = apart(steady, backdrop) < 2.0 * _PLAIN_GREY
-    yield Behind(np.where(own, steady, backdrop), level, _BESIDE)
+    yield Behind(np.where(own, steady, backdrop), level, _STANDS_OUT, _BESIDE)
     always_body &= (spread > _LOSSY_GREY) & ~own
-    yield Behind(np.where(always_body, -1e3, steady), level, _BESIDE)
+    yield Behind(np.where(always_body, -1e3, steady), level, _MOVES, _BESIDE)
 
 
 def apart(shown: Array | Smooth, behind: Array) -> Array:

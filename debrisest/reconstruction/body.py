@@ -20,7 +20,7 @@ from debrisest.reconstruction.depth import DepthView, depth_views
 from debrisest.reconstruction.error_bars import Doubts, depth_sigma, error_bars
 from debrisest.reconstruction.outlines import main_part, outlines
 from debrisest.reconstruction.poisson import poisson_mesh
-from debrisest.reconstruction.silhouettes import Frames
+from debrisest.reconstruction.silhouettes import Frames, Reading
 from debrisest.reconstruction.structure import Rig, Structure
 from debrisest.reconstruction.turntable import Table, lowered, support_of, table_under
 from debrisest.reconstruction.winding import pieces_of
@@ -28,6 +28,7 @@ from debrisest.vision.polyhedron import MassProperties, mass_properties
 
 Method = Literal["poisson", "fusion"]
 Outline = Literal["silhouettes", "either"]
+Support = Literal["found", "none"]
 LEAST_COVERAGE = 0.8
 """Of the surface, below which no number is given."""
 _CELLS = (120, 200)
@@ -36,8 +37,10 @@ _DEPTH = (6, 7)
 _NEAR = 0.025
 """Of the body's extent: how near a point of the cloud makes the surface a seen one."""
 _NEXT_PX = 2.0
-_AGREED = 0.8
-"""Share of the structure's points that silhouettes must hold."""
+_AGREED, _AGREED_GIVEN = 0.8, 0.1
+"""Share of the structure's points that silhouettes must hold: most, and if they were given some,
+since a table that turns with the body has points too."""
+_BY_CLOUD = "the hull of the cloud, since silhouettes do not tell the body: hollows fill"
 _HULL_CELLS = 60
 
 
@@ -59,8 +62,8 @@ class Body(NamedTuple):
     """Of the convex hull, for a cross-check: the volume is no larger."""
     silhouette_volume: float
     """Of what all silhouettes share: the volume is no larger, but for their errors."""
-    by_cloud: bool
-    """Whether the outlines of the cloud took the place of silhouettes."""
+    outline: str
+    """What the body was taken to be in the images, in words."""
     on_table: bool
     """Whether it was closed below by the table on which it turned."""
     support_cut: bool
@@ -69,31 +72,34 @@ class Body(NamedTuple):
 
 def reconstructed_body(
     frames: Frames,
-    readings: Sequence[BoolArray],
+    readings: Sequence[Reading],
     rig: Rig,
     structure: Structure,
     method: Method = "fusion",
     known_length: tuple[float, float] | None = None,
     outline: Outline = "silhouettes",
+    support: Support = "found",
 ) -> Body:
     """Return the body in images (time, camera, row, column) without distortion.
 
-    ``readings`` are silhouettes; of several, those count that overlap most with the cloud.
+    ``readings`` are silhouettes; of several, those count that overlap most with the cloud. With a
+    support "none" nothing is cut off below, nor closed by a plane.
     ``known_length`` is the longest distance between two points of the body, and its 1-sigma: it
     replaces the scale of the structure. Raises ValueError where no closed surface comes out.
     """
     whole = structure
-    support = support_of(whole) if outline == "either" else None
-    if support is not None:
-        structure = whole.of(support.below(whole.points) < 0.0)
-    masks, held, by_cloud = _outlined(frames, readings, rig, structure, outline)
+    on_table = outline == "either" and support == "found"
+    table = support_of(whole) if on_table else None
+    if table is not None:
+        structure = whole.of(table.below(whole.points) < 0.0)
+    (masks, said, _), held = _outlined(frames, readings, rig, structure, outline)
     structure = structure.of(held)
-    outer = _Outer(masks[:, 0], rig.matrix[0], structure, support)
-    views = depth_views(frames, masks, rig, structure if support is None else whole)
+    outer = _Outer(masks[:, 0], rig.matrix[0], structure, table)
+    views = depth_views(frames, masks, rig, structure if table is None else whole)
     extent = float(np.ptp(structure.points, axis=0).max())
     cells = [extent / count for count in _CELLS]
     cloud = _cloud(views, outer, cells[0])
-    if outline == "either" and support is None:
+    if on_table and table is None:
         outer = outer.on(table_under(cloud.points, structure))
     coarse, mesh = _SURFACES[method](views, outer, cells)
     coverage = triangles_seen(mesh, cloud, _NEAR * extent)
@@ -111,23 +117,26 @@ def reconstructed_body(
         seen=coverage,
         hull_volume=factor**3 * _hull_volume(cloud.points),
         silhouette_volume=factor**3 * outer.volume(extent / _HULL_CELLS),
-        by_cloud=by_cloud,
+        outline=said,
         on_table=outer.table is not None,
-        support_cut=support is not None,
+        support_cut=table is not None,
     )
 
 
 def _outlined(
     frames: Frames,
-    readings: Sequence[BoolArray],
+    readings: Sequence[Reading],
     rig: Rig,
     structure: Structure,
     outline: Outline,
-) -> tuple[BoolArray, BoolArray, bool]:
-    """Return silhouettes, which points (point,) they hold, and whether the cloud gave them."""
+) -> tuple[Reading, BoolArray]:
+    """Return silhouettes, and which points (point,) they hold."""
     held = [
-        _Outer(each[:, 0], rig.matrix[0], structure).holds(structure.points) for each in readings
+        _Outer(one.masks[:, 0], rig.matrix[0], structure).holds(structure.points)
+        for one in readings
     ]
+    if any(one.given for one in readings):
+        return _given(readings[0], held[0])
     if outline == "silhouettes":
         if held[0].mean() < _AGREED:
             raise ValueError(
@@ -135,14 +144,24 @@ def _outlined(
                 f"{held[0].mean():.0%} of its points: images were placed wrongly; take more of "
                 "them, or larger ones"
             )
-        return readings[0], held[0], False
+        return readings[0], held[0]
     part = main_part(structure)
     drawn = outlines(structure.of(part), rig.matrix[0], frames.shape[2:])
     agree = [place for place, each in enumerate(held) if each.mean() >= _AGREED]
     if not agree:
-        return np.repeat(drawn[:, None], frames.shape[1], axis=1), part, True
-    best = max(agree, key=lambda place: _overlap(readings[place][:, 0], drawn))
-    return readings[best], held[best], False
+        return Reading(np.repeat(drawn[:, None], frames.shape[1], axis=1), _BY_CLOUD), part
+    best = max(agree, key=lambda place: _overlap(readings[place].masks[:, 0], drawn))
+    return readings[best], held[best]
+
+
+def _given(reading: Reading, held: BoolArray) -> tuple[Reading, BoolArray]:
+    """Return masks that were given with the points they hold, or raise ValueError for too few."""
+    if held.mean() < _AGREED_GIVEN:
+        raise ValueError(
+            f"the masks hold {held.mean():.0%} of the structure's points: are they of these "
+            "images, in their order?"
+        )
+    return reading, held
 
 
 def _overlap(masks: BoolArray, drawn: BoolArray) -> float:

@@ -66,9 +66,10 @@ class DepthView(NamedTuple):
 def depth_views(
     frames: Frames, masks: BoolArray, rig: Rig, structure: Structure
 ) -> list[DepthView]:
-    """Return the depth of pairs of images (time, camera, row, column), one for each frame.
+    """Return the depth of pairs of images (time, camera, row, column).
 
-    A pair is that of the first two cameras, or where there is one, of a frame and the next.
+    A pair is that of the first two cameras, or where there is one, of a frame and the next or the
+    one before: each shows what is hidden from the other.
     """
     found = []
     for frame, (first, second) in counted(list(_pairs(rig, structure)), "depth images"):
@@ -94,13 +95,10 @@ def _pairs(rig: Rig, structure: Structure) -> Iterator[tuple[int, tuple[_At, _At
         trace = np.trace(turned, axis1=1, axis2=2)
         angle = np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))
         good = (angle > _NARROWEST) & (angle < _WIDEST)
-        if good[place + 1 : place + 2].any():
-            other = place + 1
-        elif good.any() and (structure.lens is not None or place + 1 < len(frames)):
-            other = int(np.where(good, np.abs(angle - _USUAL), np.inf).argmin())
-        else:
-            continue
-        yield one, ((one, 0), (int(frames[other]), 0))
+        beside = [near for near in (place - 1, place + 1) if 0 <= near < len(frames) and good[near]]
+        if not beside and good.any():
+            beside = [int(np.where(good, np.abs(angle - _USUAL), np.inf).argmin())]
+        yield from ((one, ((one, 0), (int(frames[near]), 0))) for near in beside)
 
 
 def _view(rig: Rig, structure: Structure, frame: int, camera: int) -> View:

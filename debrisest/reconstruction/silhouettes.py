@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -25,6 +26,18 @@ _NO_COLOUR = 128
 """Cr and Cb of what is grey."""
 
 Frames = NDArray[np.uint8]
+_BRIGHT = "what is brighter than the dark behind it"
+
+
+class Reading(NamedTuple):
+    """Silhouettes, and how they were read from the images."""
+
+    masks: BoolArray
+    """(time, camera, row, column)."""
+    said: str
+    """What the body was taken to be, in words."""
+    given: bool = False
+    """Whether somebody who knows drew them."""
 
 
 def silhouettes(frames: Frames, chroma: Frames | None = None) -> BoolArray:
@@ -33,33 +46,38 @@ def silhouettes(frames: Frames, chroma: Frames | None = None) -> BoolArray:
     ``chroma (time, camera, row, column, 2)`` are Cr and Cb of images that have colours. Raises
     ValueError where nothing tells the body from what is behind it.
     """
-    return readings(frames, chroma)[0]
+    return readings(frames, chroma)[0].masks
 
 
-def readings(frames: Frames, chroma: Frames | None = None) -> list[BoolArray]:
+def readings(frames: Frames, chroma: Frames | None = None) -> list[Reading]:
     """Return silhouettes as they can be read: before a plain backdrop, and by motion.
 
     Raises ValueError where there is none.
     """
     colours = [None] * frames.shape[1] if chroma is None else list(chroma.swapaxes(0, 1))
     each = [list(_of_camera(*one)) for one in zip(frames.swapaxes(0, 1), colours)]
-    found = [np.stack(masks, axis=1) for masks in zip(*each)]
-    told = [masks for masks in found if masks.any(axis=(0, 2, 3)).all()]
+    found = [
+        Reading(np.stack([one.masks for one in cameras], axis=1), cameras[0].said)
+        for cameras in zip(*each)
+    ]
+    told = [one for one in found if one.masks.any(axis=(0, 2, 3)).all()]
     if not told:
         raise ValueError("no body stands out from what is behind it, neither bright nor moving")
     return told
 
 
-def _of_camera(frames: Frames, chroma: Frames | None) -> Iterator[BoolArray]:
+def _of_camera(frames: Frames, chroma: Frames | None) -> Iterator[Reading]:
+    """Yield readings of the images (time, row, column) of one camera."""
     smooth = _blurred(frames)
     border = _border(smooth)
     if np.median(border) < _DARK_GREY:
-        yield _masks(smooth - float(np.median(border)), _threshold(border))
+        yield Reading(_masks(smooth - float(np.median(border)), _threshold(border)), _BRIGHT)
         return
     colours = [] if chroma is None else [chroma[..., 0], chroma[..., 1]]
     channels = [smooth, *(_blurred(each) - np.float32(_NO_COLOUR) for each in colours)]
     for behind in backdrop.readings(channels):
-        yield _masks(behind.contrasts(channels), behind.contrast, behind.beside)
+        masks = _masks(behind.contrasts(channels), behind.contrast, behind.beside)
+        yield Reading(masks, behind.said)
 
 
 def _masks(contrasts: Iterable[Array], level: float, beside: float = 0.0) -> BoolArray:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from debrisest.reconstruction.self_calibration import bent_as_told, lens_of
+from debrisest.reconstruction.small_features import placed_by_small_features
 from debrisest.reconstruction.structure import CAMERAS, Lens
 from debrisest.reconstruction.structure_job import Job, tell, threads
 
@@ -33,9 +34,12 @@ def model_and_lens(job: Job) -> tuple[Any, Lens]:
             break
         _start_from(job, lens)
         model = _model(job) or model
-    if job.how.calibrate and model is not None:
+    if model is None:
+        return model, lens
+    if job.how.calibrate:
         model, lens = bent_as_told(job.colmap, model, lens)
-    return model, lens._replace(focal_spread=float(np.hypot(lens.focal_spread, _scatter(told))))
+    lens = lens._replace(focal_spread=float(np.hypot(lens.focal_spread, _scatter(told))))
+    return placed_by_small_features(job, model), lens
 
 
 def _start_from(job: Job, lens: Lens) -> None:

@@ -24,6 +24,7 @@ def body_answer(data: Data) -> list[str]:
     lines = {
         **_images(data),
         "status": str(data.get("status", "")),
+        "outline": str(data.get("outline", "")),
         "mesh": str(data.get("mesh_method", "")),
         "mended": str(data.get("mended", "")),
         "seen": f"{data['surface_seen']:.0%} of the surface" if "surface_seen" in data else "",

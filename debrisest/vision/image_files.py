@@ -7,6 +7,7 @@ with the same names; ``times.csv`` (``frame,time_s``) has the times, if it is th
 import csv
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,11 +19,27 @@ from debrisest.errors import UserError
 from debrisest.files import content, replacing, require_ending
 from debrisest.vision.libraries import vision_library
 
-SUFFIXES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm", ".ppm", ".pnm", ".webp")
+SUFFIXES = (
+    ".png",
+    ".jpg",
+    ".jpeg",
+    ".tif",
+    ".tiff",
+    ".bmp",
+    ".pgm",
+    ".ppm",
+    ".pnm",
+    ".pbm",
+    ".webp",
+)
 VIDEOS = (".mp4", ".avi", ".mov", ".mkv", ".m4v", ".webm")
 PAIR = ("left", "right")
 TIMES = "times.csv"
 _NO_COLOUR, _LEAST_COLOUR = 128, 1.5
+_MASK = "mask"
+"""How the names of masks end that lie among the images."""
+_ORIENTATION, _TURNED = 0x0112, (".jpg", ".jpeg", ".tif", ".tiff", ".webp")
+"""EXIF's tag of how a camera was held, and the files that have it."""
 _CODECS = {".mp4": "mp4v", ".avi": "MJPG"}
 
 
@@ -44,18 +61,23 @@ class ImageSequence(NamedTuple):
 
 
 def read_images(
-    path: Path, widest: int | None = None, gaps: bool = False, colours: bool = False
+    path: Path,
+    widest: int | None = None,
+    gaps: bool = False,
+    colours: bool = False,
+    masks: bool = False,
 ) -> ImageSequence:
     """Return the images of a folder, in the order of the numbers in their names, or of a video.
 
     Images with more columns than ``widest`` are reduced to that many. ``gaps``: whether numbers may
     be missing among the frames. ``colours``: whether the chroma of images in a folder is wanted.
+    ``masks``: whether of a folder that holds both images and masks the latter are meant.
 
     Raises `UserError`: nothing there, no images, unreadable or damaged ones, other sizes, missing
     frames, times that do not fit.
     """
     if path.is_dir():
-        found = _folder(path, widest, gaps)
+        found = _folder(path, widest, gaps, masks)
         return found._replace(chroma=_chroma(path, found, widest)) if colours else found
     if not path.is_file():
         raise UserError(f"{path}: no such folder or file")
@@ -63,6 +85,12 @@ def read_images(
         return _video(path, widest)
     allowed = ", ".join(VIDEOS)
     raise UserError(f"{path}: neither a folder of images nor a video file ({allowed})")
+
+
+def has_masks(folder: Path) -> bool:
+    """Return whether names of images in a folder end in ``mask``, while others do not."""
+    names = [one for one in folder.iterdir() if one.suffix.lower() in SUFFIXES]
+    return 0 < sum(map(_is_mask, names)) < len(names)
 
 
 def count_images(path: Path) -> int:
@@ -110,10 +138,10 @@ def write_video(path: Path, frames: NDArray[np.uint8], rate_hz: float) -> None:
     writer.release()
 
 
-def _folder(path: Path, widest: int | None, gaps: bool) -> ImageSequence:
+def _folder(path: Path, widest: int | None, gaps: bool, masks: bool) -> ImageSequence:
     cameras = PAIR if all((path / name).is_dir() for name in PAIR) else ("camera",)
     folders = [path / name for name in cameras] if len(cameras) > 1 else [path]
-    names = [_names(folder) for folder in folders]
+    names = [_names(folder, masks) for folder in folders]
     for folder, own in zip(folders, names):
         if lacking := sorted(set(names[0]) ^ set(own)):
             raise UserError(
@@ -122,9 +150,11 @@ def _folder(path: Path, widest: int | None, gaps: bool) -> ImageSequence:
             )
         if not gaps:
             _check_numbers(folder, own)
-    first = folders[0] / names[0][0]
-    shape = _image(first).shape
-    found = [[_alike(folder / name, shape, widest) for name in names[0]] for folder in folders]
+    flag = _as_held([folder / name for folder in folders for name in names[0]])
+    shape = _image(folders[0] / names[0][0], flag).shape
+    found = [
+        [_alike(folder / name, flag, shape, widest) for name in names[0]] for folder in folders
+    ]
     frames = np.stack([np.stack(own) for own in found], axis=1)
     times, reduced = _times(path / TIMES, names[0]), frames.shape[3] / shape[1]
     return ImageSequence(str(path), cameras, frames, times, reduced, tuple(names[0]))
@@ -135,22 +165,49 @@ def _chroma(path: Path, images: ImageSequence, widest: int | None) -> NDArray[np
     cv2 = vision_library("cv2")
     folders = [path / name for name in images.cameras] if len(images.cameras) > 1 else [path]
     found = np.empty((*images.frames.shape, 2), np.uint8)
+    flag = cv2.IMREAD_COLOR | _as_held([one / name for one in folders for name in images.names])
     for camera, folder in enumerate(folders):
-        for epoch, name in enumerate(_names(folder)):
-            bright = cv2.cvtColor(_image(folder / name, cv2.IMREAD_COLOR), cv2.COLOR_BGR2YCrCb)
+        for epoch, name in enumerate(images.names):
+            bright = cv2.cvtColor(_image(folder / name, flag), cv2.COLOR_BGR2YCrCb)
             found[epoch, camera] = _reduced(bright, widest)[..., 1:]
     coloured = np.abs(found.astype(np.int16) - _NO_COLOUR).mean() > _LEAST_COLOUR
     return found if coloured else None
 
 
-def _names(folder: Path) -> list[str]:
-    """Return the names of the images in a folder, in the order of the numbers in them."""
-    there = (one.name for one in folder.iterdir() if one.suffix.lower() in SUFFIXES)
-    found = sorted((name for name in there if not name.startswith(".")), key=in_order)
+def _names(folder: Path, masks: bool = False) -> list[str]:
+    """Return the names of the images in a folder, in the order of the numbers in them.
+
+    Masks among them are left out, or chosen.
+    """
+    there = [one for one in folder.iterdir() if one.suffix.lower() in SUFFIXES]
+    if has_masks(folder):
+        there = [one for one in there if _is_mask(one) == masks]
+    found = sorted((one.name for one in there if not one.name.startswith(".")), key=in_order)
     if not found:
         allowed = ", ".join(SUFFIXES)
         raise UserError(f"{folder}: no images there ({allowed})")
     return found
+
+
+def _is_mask(path: Path) -> bool:
+    return path.stem.lower().endswith(_MASK)
+
+
+def _as_held(paths: Sequence[Path]) -> int:
+    """Return OpenCV's flag by which images are read as the camera was held, or as it sees them.
+
+    The latter where EXIF says that it was held in several ways: on a stand it was not, whatever its
+    sensor of gravity says when it looks down.
+    """
+    from PIL import Image
+
+    held = set()
+    for path in paths:
+        if path.suffix.lower() in _TURNED:
+            with suppress(OSError, ValueError, TypeError, SyntaxError), Image.open(path) as image:
+                held.add(int(image.getexif().get(_ORIENTATION, 1)))
+    ignored: int = vision_library("cv2").IMREAD_IGNORE_ORIENTATION
+    return ignored if len(held) > 1 else 0
 
 
 def in_order(name: str) -> tuple[list[tuple[int, str]], str]:
@@ -193,12 +250,13 @@ def _cut_off(content: bytes) -> bool:
     return content.startswith(b"\xff\xd8") and end < scan
 
 
-def _alike(path: Path, shape: tuple[int, ...], widest: int | None) -> NDArray[np.uint8]:
+def _alike(path: Path, flag: int, shape: tuple[int, ...], widest: int | None) -> NDArray[np.uint8]:
     """Return an image of the shape that all have, reduced to the widest."""
-    image = _image(path)
+    image = _image(path, flag)
     if image.shape != shape:
         told = [f"{width} x {height}" for height, width in (image.shape, shape)]
-        raise UserError(f"{path}: {told[0]} pixels, the first image has {told[1]}")
+        turned = "; turn it as the others are" if image.shape == shape[::-1] else ""
+        raise UserError(f"{path}: {told[0]} pixels, the first image has {told[1]}{turned}")
     return _reduced(image, widest)
 
 

@@ -13,8 +13,10 @@ from debrisest.arrays import Data
 from debrisest.attitude import quaternion
 from debrisest.cli.app import app
 from debrisest.cli.reconstruct import _thinned
+from debrisest.errors import UserError
 from debrisest.reconstruction.mesh_files import read_mesh
-from debrisest.vision.image_files import read_images
+from debrisest.vision.image_files import has_masks, read_images
+from debrisest.vision.masks import read_masks
 from tests.vision.conftest import Scene
 
 pytest.importorskip("cv2")
@@ -112,6 +114,62 @@ def test_places_that_are_given_tell_scale_and_axes(
     assert np.quantile(np.abs(outside), 0.7) < 0.05
 
 
+def test_masks_in_a_folder_of_their_own_tell_the_body(
+    tmp_path: Path, box: Data, photographs: Photographs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("debrisest.reconstruction.body._CELLS", (24, 40))
+    folder = put(tmp_path / "box", photographs)
+    (folder / "masks").mkdir()
+    for number, frame in enumerate(box["measured_image"][0, :, 0]):
+        drawn = Image.fromarray(np.where(frame > 12, np.uint8(255), np.uint8(0)))
+        drawn.save(folder / "masks" / f"p{number + 1}.png")
+    code, output = said(folder)
+    assert code == 0
+    assert f"note: the masks in {folder / 'masks'} tell the body" in output
+    assert line(output, "outline") == "the masks that were given"
+
+
+def test_masks_among_images_and_masks_of_the_ground_are_known(tmp_path: Path) -> None:
+    ground = np.full((40, 60), 255, np.uint8)
+    ground[10:30, 20:40] = 0
+    for number in (1, 2, 10):
+        Image.fromarray(np.full((40, 60), number, np.uint8)).save(tmp_path / f"{number}.png")
+        Image.fromarray(ground).save(tmp_path / f"{number}_mask.png")
+    images = read_images(tmp_path)
+    assert images.names == ("1.png", "2.png", "10.png")
+    assert has_masks(tmp_path)
+    np.testing.assert_array_equal(read_masks(tmp_path, images)[:, 0], [255 - ground] * 3)
+
+
+def test_masks_that_do_not_fit_are_told(tmp_path: Path) -> None:
+    for place, count in (("images", 4), ("masks", 3)):
+        put(tmp_path / place, noise(count))
+    with pytest.raises(UserError, match="masks: 3 of 64 x 48 pixels, but images: 4 of 64 x 48"):
+        read_masks(tmp_path / "masks", read_images(tmp_path / "images"))
+    _, output = said(tmp_path / "images")
+    assert "has not a mask for each image, and is not taken" in output
+
+
+def test_images_are_read_as_the_camera_sees_them_where_it_was_held_in_several_ways(
+    tmp_path: Path,
+) -> None:
+    shown = np.zeros((40, 60), np.uint8)
+    shown[:20, :30] = 200
+    for number, held in enumerate((1, 6, 6)):
+        exif = Image.Exif()
+        exif[0x0112] = held
+        Image.fromarray(shown).save(tmp_path / f"p{number}.jpg", exif=exif)
+    frames = read_images(tmp_path).frames[:, 0]
+    assert np.abs(frames.astype(int) - shown).mean() < 3.0
+    (tmp_path / "p0.jpg").unlink()
+    assert read_images(tmp_path).frames.shape == (2, 1, 60, 40)
+
+
+def test_who_knows_that_there_is_no_support_says_so(tmp_path: Path) -> None:
+    said(put(tmp_path / "free", blank(5)), "--no-support")
+    assert "support: none" in (tmp_path / "out" / "free" / "free.yaml").read_text()
+
+
 def noise(count: int, height: int = 48) -> Photographs:
     return list(np.random.default_rng(1).integers(0, 255, (count, height, 64)).astype(np.uint8))
 
@@ -129,8 +187,9 @@ def blank(count: int) -> Photographs:
         (noise(1) * 5, 1, "find a place in one structure"),
         (noise(5), 1, "find a place in one structure"),
         ([*noise(4), *noise(1, height=40)], 2, "p5.jpg: 64 x 40 pixels, the first image has"),
+        ([*noise(3), noise(1)[0].T], 2, "64 x 48; turn it as the others are"),
     ],
-    ids=["one", "two", "blank", "background", "noise", "sizes"],
+    ids=["one", "two", "blank", "background", "noise", "sizes", "turned"],
 )
 def test_what_cannot_be_reconstructed_is_told(
     tmp_path: Path, shown: Photographs, code: int, words: str

@@ -14,6 +14,7 @@ from debrisest.reconstruction.body import (
     Body,
     Method,
     Outline,
+    Support,
     reconstructed_body,
 )
 from debrisest.reconstruction.error_bars import packed
@@ -21,11 +22,11 @@ from debrisest.roles import FilterPart, Given
 
 _ON_TABLE = (
     "; it turned about one axis, seen from above: its base is taken to be flat at the lowest "
-    "points seen, and does not count as unseen"
+    "points seen, and does not count as unseen (support: none, or --no-support, if it hangs free)"
 )
 _SUPPORT_CUT = (
     "; it stands on a plane that turns with it, which is cut off: the base is taken to be flat "
-    "there, and does not count as unseen"
+    "there, and does not count as unseen (support: none, or --no-support, if the plane is its own)"
 )
 
 
@@ -41,9 +42,6 @@ _METHODS: dict[Method, str] = {
     "fusion": "silhouettes fused with depth: closes whatever is seen and keeps thin panels",
     "poisson": "screened Poisson surface of the dense cloud: for compact bodies",
 }
-_BY_CLOUD = (
-    "; outlines are those of the cloud, since silhouettes do not tell the body: hollows fill"
-)
 
 
 class Surface(FilterPart):
@@ -51,7 +49,7 @@ class Surface(FilterPart):
 
     takes = "shape_model"
     makes_start = True
-    version = 2
+    version = 3
     libraries = ("cv2", "pycolmap", "skimage")
     kind: Literal["surface"]
     method: Method = "fusion"
@@ -60,6 +58,9 @@ class Surface(FilterPart):
     outline: Outline = "silhouettes"
     """What the body ends at in each image: its silhouette, or, where silhouettes do not hold four
     of five points of the cloud, the convex hull of the cloud."""
+    support: Support = "found"
+    """Where the outline is `either`: a table on which the body turned is looked for, cut off, and
+    closes its base; or there is none, and the body goes on below as far as images let it."""
 
     def run(self, model: ShapeModel, given: Given) -> Estimates:
         """Return volume, centre and inertia of density one, the same at all epochs, and meshes."""
@@ -88,13 +89,15 @@ class Surface(FilterPart):
 
     def _body(self, model: ShapeModel, run: int) -> Body:
         images = model.images(run, several=self.outline == "either")
-        return reconstructed_body(*images, self.method, model.known_length, self.outline)
+        return reconstructed_body(
+            *images, self.method, model.known_length, self.outline, self.support
+        )
 
 
 def _in_words(body: Body) -> str:
     """Return how a mesh was made, and why."""
     below = _SUPPORT_CUT if body.support_cut else _ON_TABLE * body.on_table
-    return _METHODS[body.method] + _BY_CLOUD * body.by_cloud + below
+    return _METHODS[body.method] + below
 
 
 def _meshes(bodies: list[Body]) -> Data:
@@ -109,6 +112,7 @@ def _meshes(bodies: list[Body]) -> Data:
             [padded(body.seen.astype(np.float64), triangles) for body in bodies]
         ),
         "mesh_method": np.array([_in_words(body) for body in bodies]),
+        "outline": np.array([body.outline for body in bodies]),
         "mended": np.array(["; ".join(body.mesh.mended) for body in bodies]),
         "cell": np.array([body.cell for body in bodies]),
         "surface_seen": np.array([body.coverage for body in bodies]),

@@ -10,9 +10,9 @@ import numpy as np
 
 from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
-from debrisest.problems.shape.model import pinhole_chroma, pinhole_images
+from debrisest.problems.shape.model import body_in, pinhole_images
 from debrisest.reconstruction.given_places import laid_onto
-from debrisest.reconstruction.silhouettes import Frames, silhouettes
+from debrisest.reconstruction.silhouettes import Frames
 from debrisest.reconstruction.structure import How, Rig, Structure, structure_from_motion
 from debrisest.roles import RecoveryPart
 
@@ -38,7 +38,7 @@ class StructureFromMotion(RecoveryPart):
         *("found_camera_matrix", "found_lens_distortion", "found_focal_spread"),
         "found_distortion_spread",
     )
-    version = 4
+    version = 5
     libraries = ("cv2", "pycolmap")
     kind: Literal["structure_from_motion"]
     leave_out: Literal["outside_silhouettes", "still_features"] = "outside_silhouettes"
@@ -68,7 +68,7 @@ class StructureFromMotion(RecoveryPart):
         spread = data.get("focal_spread", np.zeros(run + 1))[run]
         how = How(calibrate=bool(spread > 0.0), leave_out_still=still)
         anywhere = np.ones(frames.shape, dtype=np.bool_)
-        masks = anywhere if still else silhouettes(frames, pinhole_chroma(data, run))
+        masks = anywhere if still else body_in(frames, data, run)[0].masks
         folder = _folder(frames, rig, how)
         found = structure_from_motion(frames, masks, rig, folder, how)
         shutil.rmtree(folder, ignore_errors=True)

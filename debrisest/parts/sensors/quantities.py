@@ -15,6 +15,9 @@ QUANTITIES = {
         "1",
         "Cr and Cb of images that have colours, from 0 to 255",
     ),
+    "measured_mask": Quantity(
+        (*TIME, "camera", "image_row", "image_column"), "1", "masks of the body: 255 where it is"
+    ),
     "camera_matrix": Quantity(("run", "camera", "row", "column"), "px", "camera matrix"),
     "lens_distortion": Quantity(("run", "camera", "coefficient"), "1", "k1, k2, p1, p2, k3"),
     "focal_spread": Quantity(RUN, "1", "relative 1-sigma of the focal length; 0: calibrated"),

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from debrisest.arrays import Array, Data
@@ -17,6 +18,7 @@ from debrisest.tracks.types import Camera
 from debrisest.tracks.write_calibration import camera_matrix
 from debrisest.vision.focal_length import first_focal
 from debrisest.vision.image_files import SUFFIXES, TIMES, ImageSequence, read_images
+from debrisest.vision.masks import read_masks
 
 _COEFFICIENTS, _FEWEST = 5, 3
 _PLACES = ".txt"
@@ -46,6 +48,10 @@ class MeasuredImages(SourcePart):
     """Frame rate of images that have no times; none: one each second."""
     every: int = Field(1, ge=1)
     """Take one image of so many."""
+    masks: str | None = None
+    """A folder of masks, white where the body is, one for each image, in the order of the numbers
+    in their names; the folder of the images itself, where names of masks end in `mask`. None: the
+    body is told by what is behind it."""
 
     def read(self, folder: Path) -> Data:
         """Return images with their times, and what is known of the cameras."""
@@ -54,14 +60,19 @@ class MeasuredImages(SourcePart):
         if len(times) < _FEWEST:
             told = "one image" if len(times) == 1 else f"{len(times)} images"
             raise UserError(f"{images.source}: {told}; a body that turns needs {_FEWEST}, or more")
-        chroma = images.chroma
+        seen = {"measured_chroma": images.chroma, "measured_mask": self._masks(folder, images)}
         return {
             "run": np.zeros(1),
             "time_s": times - times[0],
             "measured_image": images.frames[None, :: self.every],
-            **({} if chroma is None else {"measured_chroma": chroma[None, :: self.every]}),
+            **{k: each[None, :: self.every] for k, each in seen.items() if each is not None},
             **self._cameras(folder, images),
         }
+
+    def _masks(self, folder: Path, images: ImageSequence) -> NDArray[np.uint8] | None:
+        if self.masks is None:
+            return None
+        return read_masks(folder / self.masks, images, self.widest_px)
 
     def _cameras(self, folder: Path, images: ImageSequence) -> Data:
         if self.camera is None:
@@ -119,8 +130,10 @@ class MeasuredImages(SourcePart):
 
     def digest(self, folder: Path) -> str:
         """Return the SHA-256 of all images and of the calibration."""
-        path = folder / self.folder
-        inside = sorted(path.rglob("*")) if path.is_dir() else [path]
+        paths = [folder / each for each in (self.folder, self.masks) if each]
+        inside = [
+            one for path in paths for one in (sorted(path.rglob("*")) if path.is_dir() else [path])
+        ]
         used = [one for one in inside if one.suffix.lower() in SUFFIXES or one.name == TIMES]
         files = [*(used or inside), *([folder / self.camera] if self.camera else [])]
         whole = sha256()

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data
-from debrisest.reconstruction.silhouettes import Frames, readings, silhouettes
+from debrisest.reconstruction.silhouettes import Frames, Reading, readings, silhouettes
 from debrisest.reconstruction.structure import Lens, Rig, Structure
 from debrisest.reconstruction.undistorted import undistorted
 
@@ -15,13 +15,17 @@ ERROR_NAMES = (
 )
 
 
+_HALF = 127
+_GIVEN = "the masks that were given"
+
+
 class ImagesOfBody(NamedTuple):
     """Images of one run without distortion, and where they were taken."""
 
     frames: Frames
     """(time, camera, row, column)."""
-    readings: list[BoolArray]
-    """Silhouettes (time, camera, row, column): one reading, or several to choose from."""
+    readings: list[Reading]
+    """Silhouettes: one reading, or several to choose from."""
     rig: Rig
     structure: Structure
 
@@ -41,12 +45,12 @@ class ShapeModel(NamedTuple):
         """
         frames, rig = pinhole_images(self.data, run, "found_")
         try:
-            masks = readings(frames, pinhole_chroma(self.data, run, "found_"))
+            read = body_in(frames, self.data, run, "found_")
         except ValueError:
             if not several:
                 raise
-            masks = []
-        return ImagesOfBody(frames, masks, rig, structure_of(self.data, run))
+            read = []
+        return ImagesOfBody(frames, read, rig, structure_of(self.data, run))
 
 
 def seen(data: Data, run: int) -> tuple[Frames, BoolArray, Rig]:
@@ -63,12 +67,22 @@ def pinhole_images(data: Data, run: int, which: str = "") -> tuple[Frames, Rig]:
     return flat, Rig(matrix, data["rig_rotation"][run], data["rig_translation"][run])
 
 
-def pinhole_chroma(data: Data, run: int, which: str = "") -> Frames | None:
-    """Return the colours of images without distortion, if they have any."""
-    if "measured_chroma" not in data:
+def body_in(frames: Frames, data: Data, run: int, which: str = "") -> list[Reading]:
+    """Return where the body is in images without distortion: masks that are given, or readings.
+
+    Raises ValueError where nothing tells it from what is behind it.
+    """
+    if (given := _pinhole(data, "measured_mask", run, which)) is not None:
+        return [Reading(given > _HALF, _GIVEN, given=True)]
+    return readings(frames, _pinhole(data, "measured_chroma", run, which))
+
+
+def _pinhole(data: Data, name: str, run: int, which: str) -> Frames | None:
+    """Return images of a kind without distortion, if there are any."""
+    if name not in data:
         return None
-    lens = (data[f"{which}{name}"][run] for name in ("camera_matrix", "lens_distortion"))
-    return undistorted(data["measured_chroma"][run].astype(np.uint8), *lens)
+    lens = (data[f"{which}{lens}"][run] for lens in ("camera_matrix", "lens_distortion"))
+    return undistorted(data[name][run].astype(np.uint8), *lens)
 
 
 def structure_of(data: Data, run: int) -> Structure:

@@ -21,6 +21,7 @@ QUANTITIES = {
     "triangle_r": Quantity(("run", "triangle", "corner"), "1", "its triangles, counterclockwise"),
     "triangle_seen": Quantity(("run", "triangle"), "1", "whether an image shows the triangle"),
     "mesh_method": Quantity(RUN, "", "how the mesh was made, and why, in words"),
+    "outline": Quantity(RUN, "", "what the body was taken to be in the images, in words"),
     "mended": Quantity(RUN, "", "what was wrong with the mesh, in words"),
     "cell": Quantity(RUN, "m", "side of the finer cells of the mesh"),
     "surface_seen": Quantity(RUN, "1", "share of the surface that the images show", "1"),
