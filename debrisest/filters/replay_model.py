@@ -95,9 +95,19 @@ class ReplayModel(NamedTuple):
     """Errors that the measurements may tell along a bent valley of the cost only."""
     point_rows: Callable[[Array, Array, int, IntArray], PointRows] | None = None
     """The same as `rows`, for a model whose rows depend on few errors each."""
+    course: Callable[[Array, int], tuple[Array, Array]] | None = None
+    """(state at epoch 0, last) -> states (run, epoch, n) and measurements (run, epoch, m) up to
+    epoch `last`, for a model that has them for less without derivatives."""
     select: Callable[[IntArray], "ReplayModel"] | None = None
     """The model of some runs; without it, the model is the same for all."""
 
     def of(self, runs: IntArray) -> "ReplayModel":
         """Return the model of some runs."""
         return self if self.select is None else self.select(runs)
+
+    def shown(self, state: Array, last: int) -> tuple[Array, Array]:
+        """Return what `course` does, of any model."""
+        if self.course is not None:
+            return self.course(state, last)
+        states, sensitivity = self.trajectory(state, 0, last)
+        return states, self.rows(states, sensitivity, 0, np.arange(last + 1))[0]

@@ -6,7 +6,7 @@ from scipy.optimize import minimize_scalar
 
 from debrisest.filters.replay.gauss_newton import Held, gauss_newton
 from debrisest.filters.replay.measured_arc import measured_arc
-from debrisest.filters.replay.replay import replay
+from debrisest.filters.replay.replay import replay, smooth
 from debrisest.filters.replay.valley import with_bends
 from debrisest.filters.replay_model import ReplayModel
 
@@ -123,3 +123,34 @@ def test_all_but_what_is_held_is_at_its_best(error: int) -> None:
     at = gauss_newton(model, arc, prior, EPOCHS - 1, 5, 1e-9, held=held).at
     way = spread[:, :, error] / spread[:, error, error, None]
     np.testing.assert_allclose(at.state, best + value[:, None] * way, atol=1e-6)
+
+
+def test_what_is_held_is_put_back_alone() -> None:
+    _, known, found, _ = found_of(line())
+    model, best = known[0], found.state[:, -1]
+    held = Held(np.full(RUNS, SLOPE), best, np.linspace(-1.0, 1.0, RUNS), np.full(RUNS, 1e-6))
+    kept = held.kept(model, best + np.array([0.1, 0.2]))
+    np.testing.assert_allclose(kept, best + np.stack([np.full(RUNS, 0.1), held.value], -1))
+
+
+def test_where_nothing_more_can_be_moved_it_is_left_to_be_sought() -> None:
+    """A state that cannot follow is not moved half the way."""
+    _, known, found, _ = found_of(line())
+    model, best = known[0], found.state[:, -1]
+    stuck = model._replace(retract=lambda state, error: state + np.clip(error, -0.1, 0.1))
+    held = Held(np.full(RUNS, SLOPE), best, np.full(RUNS, 0.5), np.full(RUNS, 1e-6))
+    np.testing.assert_array_equal(held.kept(stuck, best), best)
+
+
+def test_all_epochs_of_a_smoother_have_the_spread_of_one_motion() -> None:
+    """Constants are as uncertain at every epoch, and the floor of their cost is one."""
+    model, prior, covariance, measured = found_of(product())[1]
+    found = replay(model, prior, covariance, measured)
+    final = smooth(model, prior, covariance, measured, found, keep=[3, EPOCHS - 1])
+    told = with_bends(model, prior, covariance, measured, final, smoothed=True)
+    filtered = with_bends(model, prior, covariance, measured, found)
+    np.testing.assert_allclose(told.covariance[:, 0], told.covariance[:, 1], rtol=1e-9)
+    np.testing.assert_allclose(told.sigma[:, 2], told.sigma[:, -1], rtol=1e-9)
+    wide = filtered.sigma[:, -1, SLOPE] > 1.5 * found.sigma[:, -1, SLOPE]
+    assert wide.any()
+    assert np.all(told.sigma[wide, -1, SLOPE] > 1.3 * final.sigma[wide, -1, SLOPE])

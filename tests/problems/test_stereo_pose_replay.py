@@ -79,6 +79,17 @@ def test_arcs_match_steps_and_rewind(slow):
     np.testing.assert_allclose(back[:, -1], states[:, 4], atol=1e-9)
 
 
+@pytest.mark.parametrize("q_lc", [(1, 0, 0, 0), TURNED])
+def test_what_a_motion_shows_is_the_same_without_derivatives(experiment, q_lc):
+    slow = experiment(3, 7, 1, slow=True, q_lc=q_lc)
+    states, sensitivity = slow.model.trajectory(slow.prior, 0, 6)
+    expected, _ = slow.model.rows(states, sensitivity, 0, np.arange(7))
+    for model in (slow.model, slow.model._replace(course=None)):
+        course, shown = model.shown(slow.prior, 6)
+        np.testing.assert_allclose(course, states, atol=1e-12)
+        np.testing.assert_allclose(shown, expected, atol=1e-13)
+
+
 @pytest.mark.parametrize("first", [0, 4])
 @pytest.mark.parametrize("q_lc", [(1, 0, 0, 0), TURNED])
 def test_derivatives_match_differences(experiment, first, q_lc):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.filters.replay.measured_arc import MeasuredArc, linearize
+from debrisest.filters.replay.measured_arc import MeasuredArc, residuals
 from debrisest.filters.replay_model import ReplayModel
 
 
@@ -28,5 +28,5 @@ def reference_of(model: ReplayModel, arc: MeasuredArc, state: Array) -> Referenc
     """Return the motion from ``state (run, n)`` at epoch 0."""
     offset = model.plain_difference(arc.prior, state)[..., None]
     prior = np.swapaxes(offset, -1, -2) @ arc.information @ offset
-    last = arc.measured.shape[1] - 1
-    return Reference(prior[:, 0, 0], linearize(model, arc, state, last).residual)
+    _, shown = model.shown(state, arc.measured.shape[1] - 1)
+    return Reference(prior[:, 0, 0], residuals(model, arc, shown))

@@ -15,6 +15,7 @@ CONVERGED = 1e-2
 """The predicted decrease of the cost below which the iteration ends: a step of 0.1 sigma, in all
 directions together, which is taken yet."""
 _FIRST_DAMPING, _LEAST_DAMPING = 0.1, 0.01
+_CHARTS = 2  # rounds in which an error comes to lie where it is kept, of a chart that bends
 _LIMITS = 2
 """Rounds in which limits of a step are found, one of which may bring up the next."""
 
@@ -34,6 +35,15 @@ class Held(NamedTuple):
         """Return by how much (run,) states at epoch 0 fall short of it."""
         runs = np.arange(len(state))
         return self.value - model.plain_difference(state, self.beside)[runs, self.error]
+
+    def kept(self, model: ReplayModel, state: Array) -> Array:
+        """Return states at epoch 0 with it where it is kept, if it alone can be moved to there."""
+        step, moved = np.zeros((len(state), len(model.error_names))), state
+        for _ in range(_CHARTS):
+            step[np.arange(len(state)), self.error] = self.miss(model, moved)
+            moved = move(model, moved, step)
+        there = np.abs(self.miss(model, moved)) < self.sigma
+        return np.where(there[:, None], moved, state)
 
     def added(self, model: ReplayModel, at: Linearization) -> Linearization:
         """Return a linearised cost with it, as one more measurement."""
@@ -81,8 +91,10 @@ def gauss_newton(
 
     def place(runs: IntArray, state: Array) -> Linearization:
         part = model.of(runs)
-        at = linearize(part, take(arc, runs), state, last)
-        return at if held is None else take(held, runs).added(part, at)
+        if held is None:
+            return linearize(part, take(arc, runs), state, last)
+        own = take(held, runs)
+        return own.added(part, linearize(part, take(arc, runs), own.kept(part, state), last))
 
     def step(at: Linearization, runs: IntArray, damping: Array) -> tuple[Array, Array]:
         return _step(model.of(runs), at, arc.information[runs], damping)

@@ -62,6 +62,13 @@ def measured_arc(
     )
 
 
+def residuals(model: ReplayModel, arc: MeasuredArc, shown: Array) -> Array:
+    """Normalised residuals of what is ``shown (run, epoch, m)`` from epoch 0 on, as `linearize`."""
+    epochs = slice(shown.shape[1])
+    residual = arc.measured[:, epochs] - shown / model.sigma
+    return np.where(arc.seen[:, epochs], residual, 0.0)
+
+
 def linearize(model: ReplayModel, arc: MeasuredArc, state: Array, last: int) -> Linearization:
     """Linearise the cost of epochs 0 to ``last`` at ``state (run, n)`` of epoch 0."""
     states, sensitivity = model.trajectory(state, 0, last)

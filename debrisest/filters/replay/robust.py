@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Array, IntArray
 from debrisest.filters import weights
 from debrisest.filters.replay.gauss_newton import CONVERGED, Solution, gauss_newton, move
-from debrisest.filters.replay.measured_arc import Linearization, MeasuredArc, linearize
+from debrisest.filters.replay.measured_arc import Linearization, MeasuredArc, residuals
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import put, take
 
@@ -86,7 +86,7 @@ def _settle(
     """Solution from one start, its weights and its loss."""
     seen = arc.seen[:, : last + 1]
     weighted = arc._replace(weight=arc.weight.copy())
-    residual = linearize(model, weighted, start, last).residual
+    residual = residuals(model, arc, model.shown(start, last)[1])
     passes = [weights.cauchy] * (_EARLY_PASSES if frames <= _EARLY_FRAMES else 1)
     passes.append(weights.cauchy if frames <= _SOFT_FRAMES else weights.hard)
     for rule in passes:

@@ -133,6 +133,17 @@ def propagate(known: StereoGeometry, state: Array, first: int, last: int) -> tup
     return states, turning
 
 
+def course(known: StereoGeometry, state: Array, last: int) -> Array:
+    """States ``(run, epoch, n)`` up to epoch ``last`` of the motion from ``state`` at epoch 0."""
+    epochs = np.arange(last + 1)
+    states = np.repeat(state[:, None], last + 1, axis=1)
+    states[..., POSITION], states[..., VELOCITY] = _translation(known, state, epochs)
+    states[..., Q], states[..., RATE] = exact_rotation(
+        known.times[epochs], state[:, Q], state[:, RATE], state[:, K], known.leader.at(2 * epochs)
+    )
+    return states
+
+
 def rewind(known: StereoGeometry, state: Array, epoch: int) -> Array:
     """State ``(run, n)`` at epoch 0 of the motion that passes through ``state`` at ``epoch``."""
     result, ends = state.copy(), np.array([epoch, 0])

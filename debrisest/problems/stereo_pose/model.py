@@ -143,15 +143,21 @@ def shown_by_points(known: StereoGeometry, point: Array, velocity: Array) -> Arr
     return np.concatenate([turned[..., :3] @ turn, turned[..., 3:] @ turn], axis=-1)
 
 
-def target_acceleration(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
+def target_acceleration(
+    known: StereoGeometry, state: NDArray[Any], k: int | IntArray
+) -> NDArray[Any]:
     """Angular acceleration of the target ``(..., 3)`` in ``t``, rad/s^2, at epoch ``k``."""
-    spin = np.array([0.0, 0.0, float(known.leader.rate[2 * k])])
-    rate_t = unrotate(state[..., Q], state[..., RATE] + spin, known.raw_rotation)
+    total = state[..., RATE].copy()
+    total[..., 2] += known.leader.rate[2 * k]
+    rate_t = unrotate(state[..., Q], total, known.raw_rotation)
     return inertia_ratios.angular_acceleration(rate_t, state[..., K])
 
 
-def measurement(known: StereoGeometry, state: NDArray[Any], k: int) -> NDArray[Any]:
-    """Measurements ``(..., m)`` of epoch ``k``: point by point, then the angular acceleration."""
+def measurement(known: StereoGeometry, state: NDArray[Any], k: int | IntArray) -> NDArray[Any]:
+    """Measurements ``(..., m)``: point by point, then the angular acceleration.
+
+    ``k`` is the epoch of all states, or those of the last of their leading axes.
+    """
     point, velocity = points_in_view(state, known.points, known.raw_rotation)
     rows = shown_of_points(known, point, velocity).reshape(*state.shape[:-1], -1)
     if not known.shown.acceleration:

@@ -17,6 +17,7 @@ from debrisest.problems.stereo_pose.model import (
     Q,
     StereoGeometry,
     error_names,
+    measurement,
     points_in_view,
     shown_by_points,
     shown_of_points,
@@ -62,7 +63,13 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
         bending=tuple(range(chart.K_ERROR.start, chart.K_ERROR.stop)),
         displace=lambda state, error: chart.displace(state, error, points),
         point_rows=at_epochs,
+        course=lambda state, last: _course(known, state, last),
     )
+
+
+def _course(known: StereoGeometry, state: Array, last: int) -> tuple[Array, Array]:
+    states = chart.course(known, state, last)
+    return states, measurement(known, states, np.arange(last + 1))
 
 
 def _dense(rows: PointRows) -> tuple[Array, Array]:
