@@ -18,7 +18,7 @@ from debrisest.roles import FilterPart, Given
 class Replay(FilterPart):
     """Maximum a posteriori at every epoch of all measurements so far, or of all there are."""
 
-    version = 4
+    version = 5
     takes = "replay_model"
     runs_together = 100
     kind: Literal["replay"]
