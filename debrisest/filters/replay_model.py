@@ -93,6 +93,8 @@ class ReplayModel(NamedTuple):
     doubts: tuple[Doubt, ...] = ()
     bending: tuple[int, ...] = ()
     """Errors that the measurements may tell along a bent valley of the cost only."""
+    mirror: Callable[[Array], Array] | None = None
+    """state -> another one that may fit the measurements about as well; none: there is none."""
     point_rows: Callable[[Array, Array, int, IntArray], PointRows] | None = None
     """The same as `rows`, for a model whose rows depend on few errors each."""
     course: Callable[[Array, int], tuple[Array, Array]] | None = None

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.linear_algebra import solve
+from debrisest.filters.rivals import DECISIVE
 from debrisest.filters.status import FilterStatus, ReplayStatus
 from debrisest.outcome import Outcome
 
@@ -219,9 +220,15 @@ def parts_test(part: Array, whole: Array, part_spread: Array, whole_spread: Arra
     )
 
 
-def rival_test(advantage: Array, decisive: float, reason: str) -> SelfTest:
-    """Test by how much the cost of the best other solution is higher (run,), infinite if none."""
-    return SelfTest(-advantage, -decisive, reason, Verdict.AMBIGUOUS)
+def rival_test(gap: Array) -> SelfTest:
+    """Test by how much the mirror's cost is higher (run,); infinite or NaN where there is none."""
+    return SelfTest(
+        -gap,
+        -DECISIVE,
+        "the motion and another one, with its depth reversed, fit the images about as well; "
+        "a longer arc, or a target that turns more, is needed to tell them apart",
+        Verdict.AMBIGUOUS,
+    )
 
 
 def score_test(value: Array, sigma: Array, reason: str, scale: float = 1.0) -> SelfTest:

@@ -10,10 +10,9 @@ from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.landmarks.cost import Prior, Unknowns
 from debrisest.filters.landmarks.growing_windows import Fit, Window, fit, fresh
 from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.rivals import GIVEN_UP, squared_distance
 from debrisest.filters.runs import put, take
 
-PRUNE = 100.0
-"""Excess of cost beyond the other solution's at which the mirror is given up early."""
 _MOST_FALSE, _MOST_STRAY = 0.5, 0.02
 """Share of sightings that disagree beyond which a fit is none: with false matches, and without."""
 _CONFIRMED_SHARE, _CONFIRMED_SIGHTINGS = 0.6, 5
@@ -156,7 +155,7 @@ def mirrored(task: Problem, best: Fit, windows: Sequence[Window]) -> Fit:
             *([window], batch.iterations, batch.robust),
         )
         excess = found.found.value - found.found.dof * ratio[runs]
-        kept = np.flatnonzero(excess < PRUNE)
+        kept = np.flatnonzero(excess < GIVEN_UP)
         found, runs = take(found, kept), runs[kept]
         if len(runs) == 0:
             return result
@@ -168,7 +167,7 @@ def mirrored(task: Problem, best: Fit, windows: Sequence[Window]) -> Fit:
 def _same(one: Fit, other: Fit) -> BoolArray:
     """Whether two fits are the same minimum: their distance is small beside its sigma."""
     offset = one.at.vector - other.at.vector
-    distance = (offset[:, None] @ one.found.information @ offset[..., None])[:, 0, 0]
+    distance = squared_distance(offset, one.found.information)
     return np.asarray(distance < offset.shape[-1])
 
 

@@ -13,7 +13,6 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.landmarks.batch_start import (
-    PRUNE,
     Problem,
     Rivals,
     adopt,
@@ -35,6 +34,7 @@ from debrisest.filters.landmarks.growing_windows import (
 )
 from debrisest.filters.landmarks.update import Belief
 from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.rivals import GIVEN_UP
 from debrisest.filters.runs import put, take
 
 _GROWTH = 1.5
@@ -92,7 +92,7 @@ def _over(task: Problem, found: Rivals, end: int) -> tuple[Rivals, Observations]
     """Both solutions over a longer window, the other one only where it still fits about as well."""
     runs = np.arange(len(task.parameters))
     best, observed = _exact(task, found.best, end)
-    alive = np.flatnonzero(found.gap < PRUNE)
+    alive = np.flatnonzero(found.gap < GIVEN_UP)
     rest = take(best, runs)
     rest.found.value[:] = np.inf
     if len(alive):
@@ -158,7 +158,7 @@ def _led(
 
 def _near(begun: Fit, ratio: Array) -> BoolArray:
     """Whether the cost of a fit is not far above that of a rival with this cost per component."""
-    return np.asarray(~(begun.found.value - begun.found.dof * ratio >= PRUNE))
+    return np.asarray(~(begun.found.value - begun.found.dof * ratio >= GIVEN_UP))
 
 
 def _from_mirror(task: Problem, best: Fit) -> Fit:

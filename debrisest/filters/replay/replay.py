@@ -4,7 +4,7 @@ At the anchors, epochs in geometric progression, those whose covariance is kept,
 Gauss-Newton runs over all measurements so far, so that no derivative at a superseded state is left
 in the information; between them an iterated extended Kalman filter, in information form and in the
 state's own chart, carries the estimate on. Nothing is tuned. The measurements are kept, and the
-average cost of an epoch grows slowly.
+average cost of an epoch grows slowly. Where the model has a mirror, another solution competes.
 """
 
 from collections.abc import Sequence
@@ -16,16 +16,16 @@ from debrisest.filters.estimates import Estimates, EstimatesWriter, joined
 from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.replay.cost import Reference, reference_of
 from debrisest.filters.replay.frame_update import Belief, first_frame, predict, update
-from debrisest.filters.replay.gauss_newton import CONVERGED, Solution, gauss_newton, move
+from debrisest.filters.replay.gauss_newton import CONVERGED, Solution, move
 from debrisest.filters.replay.measured_arc import MeasuredArc, measured_arc
-from debrisest.filters.replay.robust import robust_newton
+from debrisest.filters.replay.rival import compete, no_rival
+from debrisest.filters.replay.search import Search
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import take
 from debrisest.filters.status import ReplayStatus
 
 RATIO = 1.25
 """Of successive anchors; at 1 every epoch is one."""
-_ITERATIONS = 30
 _IN_PASSING = 0.25
 """Of anchors whose result is not kept, the predicted decrease of the cost below which the step is
 taken without another look: what it leaves undone is of second order, below 0.01 in general."""
@@ -54,7 +54,8 @@ def replay(
     NIS is the rise of the least cost by what an epoch shows, after all iterations of its update; of
     the first measured epoch it is the least cost itself. The status speaks of the last epoch.
 
-    Counts are `cost`, at anchors, `cost_of_truth` at kept epochs, and `rejected`.
+    Counts are `cost`, at anchors, and by how much the other solution's is higher (`rival_excess`),
+    `cost_of_truth` at kept epochs, and `rejected`.
     """
     _require_shapes(model, prior, measured, ratio)
     groups = _begun_together(measured)
@@ -67,7 +68,7 @@ def replay(
             for runs in groups
         ]
         return joined(groups, found)
-    epochs, counts = measured.shape[1], {"cost": np.nan}
+    epochs, counts = measured.shape[1], {"cost": np.nan, "rival_excess": np.nan}
     counts |= {"rejected": 0} if gate else {}
     counts |= {} if reference is None else {"cost_of_truth": np.nan}
     known = covariance, epochs, keep, counts
@@ -124,10 +125,7 @@ def _smooth(
     with np.errstate(all="ignore"):
         arc = take(measured_arc(model, prior, covariance, measured), writer.runs)
         start = model.rewind(end[writer.runs], last)
-        if gate:
-            solution = robust_newton(model, arc, [start], last, last, _ITERATIONS)
-        else:
-            solution = gauss_newton(model, arc, start, last, _ITERATIONS)
+        solution = Search(last, last, gate).solve(model, arc, [start])
         best = move(model, solution.at.state, solution.step)
         states, sensitivity = model.trajectory(best, 0, last)
         spread = scaled_inverse(solution.at.information)
@@ -176,11 +174,13 @@ def _filter(
     going = writer.runs
     back = model.inverse_chart(arc.prior)
     belief = Belief(arc.prior, np.swapaxes(back, -1, -2) @ arc.information @ back)
+    rival = no_rival(model, arc)
     for k in range(arc.measured.shape[1]):
         if len(going) == 0:
             break
         if len(going) < len(belief.state):
             model, belief, arc = model.of(going), take(belief, going), take(arc, going)
+            rival = take(rival, going)
             reference = None if reference is None else take(reference, going)
         if k > 0:
             belief = predict(model, belief, k)
@@ -188,8 +188,11 @@ def _filter(
         figures: Data = frame._asdict()
         if k in schedule:
             tolerance = CONVERGED if writer.keeps(k) else _IN_PASSING
-            belief, solution = _replayed(model, belief, arc, k, schedule, gate, tolerance)
-            figures["cost"] = solution.cost
+            search = Search(k, k - schedule[0] + 1, gate, tolerance)
+            solution = search.solve(model, arc, _starts(model, belief, arc, k, schedule, gate))
+            compete(search, model, arc, solution, rival, writer.keeps(k))
+            belief = _belief(model, solution, k)
+            figures |= {"cost": solution.cost, "rival_excess": rival.gap}
             writer.conclude(_status(solution))
             if k == schedule[0]:
                 figures |= first_frame(arc, solution, k)._asdict()
@@ -204,31 +207,26 @@ def _status(solution: Solution) -> IntArray:
     return np.where(solution.converged, ReplayStatus.CONVERGED, ReplayStatus.NOT_CONVERGED)
 
 
-def _replayed(
-    model: ReplayModel,
-    belief: Belief,
-    arc: MeasuredArc,
-    k: int,
-    schedule: list[int],
-    gate: bool,
-    tolerance: float,
-) -> tuple[Belief, Solution]:
-    """Belief of epoch k by a replay of everything measured so far."""
+def _starts(
+    model: ReplayModel, belief: Belief, arc: MeasuredArc, k: int, schedule: list[int], gate: bool
+) -> list[Array]:
+    """States at epoch 0 from which the replay of epoch k begins."""
     number = schedule.index(k)
     starts = [] if number == 0 else [model.rewind(belief.state, k)]
     if number == 0 or (gate and number < _FRESH_STARTS):
         shown = np.where(arc.seen[:, k], arc.measured[:, k], np.nan)
         starts.append(model.start(arc.prior, shown * model.sigma, k))
-    if gate:
-        solution = robust_newton(model, arc, starts, k, k - schedule[0] + 1, _ITERATIONS, tolerance)
-    else:
-        solution = gauss_newton(model, arc, starts[0], k, _ITERATIONS, tolerance)
+    return starts
+
+
+def _belief(model: ReplayModel, solution: Solution, k: int) -> Belief:
+    """Belief of epoch k by everything measured so far."""
     at = solution.at
     transition = model.transition(at.last_sensitivity, 0, k)
     to_chart = model.chart(at.last_state) @ transition
     state = model.retract(at.last_state, (to_chart @ solution.step[..., None])[..., 0])
     back = np.linalg.inv(transition) @ model.inverse_chart(at.last_state)
-    return Belief(state, np.swapaxes(back, -1, -2) @ at.information @ back), solution
+    return Belief(state, np.swapaxes(back, -1, -2) @ at.information @ back)
 
 
 def _require_shapes(model: ReplayModel, prior: Array, measured: Array, ratio: float) -> None:

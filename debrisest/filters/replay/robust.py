@@ -94,10 +94,11 @@ def _settle(
         weighted.weight[:, : last + 1] = weight
         solution = gauss_newton(model, weighted, start, last, iterations, tolerance)
         start, residual = move(model, solution.at.state, solution.step), solution.at.residual
-    return solution, weight, _loss(model, arc, solution.at)
+    return solution, weight, loss(model, arc, solution.at)
 
 
-def _loss(model: ReplayModel, arc: MeasuredArc, at: Linearization) -> Array:
+def loss(model: ReplayModel, arc: MeasuredArc, at: Linearization) -> Array:
+    """Return the prior's cost and Cauchy's of all that was seen, (run,), whatever its weight."""
     offset = model.plain_difference(arc.prior, at.state)
     prior = (offset[:, None] @ arc.information @ offset[..., None])[:, 0, 0]
     squares = (at.residual / weights.CAUCHY_SCALE) ** 2

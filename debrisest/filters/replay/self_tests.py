@@ -11,7 +11,7 @@ from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.replay.measured_arc import MeasuredArc, measured_arc
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import put
-from debrisest.filters.self_test import SelfTest, block_test, cost_test, score_test
+from debrisest.filters.self_test import SelfTest, block_test, cost_test, rival_test, score_test
 
 _BLOCKS = 10
 _TOGETHER = 10  # runs at a time, for the sake of memory
@@ -61,7 +61,7 @@ def self_tests(
     ]
     for i, doubt in enumerate(doubts):
         tests.append(score_test(fit.doubt[:, i], fit.sigma[:, i], doubt.reason, doubt.scale))
-    return tests
+    return [*tests, rival_test(found.counts["rival_excess"][:, last])]
 
 
 def _fit(model: ReplayModel, arc: MeasuredArc, start: Array, gate: bool) -> _Fit:

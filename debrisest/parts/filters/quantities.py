@@ -13,6 +13,9 @@ QUANTITIES = {
     "nis_dof": Quantity(TIME, "1", "measured components at the epoch"),
     "cost": Quantity(TIME, "1", "twice the negative log posterior density of the estimate"),
     "cost_of_truth": Quantity(TIME, "1", "the same of the truth, given the same measurements"),
+    "rival_excess": Quantity(
+        TIME, "1", "cost of the other solution above the estimate's; infinite: there is none"
+    ),
     "cost_numbers": Quantity(RUN, "1", "numbers that it is the cost of, if not all errors"),
     "rejected": Quantity(
         TIME, "1", "components that the gate rejected at the epoch; assess: their share", "1"

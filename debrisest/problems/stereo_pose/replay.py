@@ -10,6 +10,7 @@ from debrisest.dynamics.relative_orbit import transitions
 from debrisest.filters.replay_model import PointRows, ReplayModel
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose.doubts import doubts
+from debrisest.problems.stereo_pose.mirror import mirror
 from debrisest.problems.stereo_pose.model import (
     POSITION,
     RATE,
@@ -62,6 +63,7 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
         doubts=doubts(known),
         bending=tuple(range(chart.K_ERROR.start, chart.K_ERROR.stop)),
         displace=lambda state, error: chart.displace(state, error, points),
+        mirror=lambda state: mirror(state, points),
         point_rows=at_epochs,
         course=lambda state, last: _course(known, state, last),
     )
