@@ -36,12 +36,13 @@ def point_sums(
     n_e = 14 + 3 * points
     residual, information = np.empty((runs, epochs, len(noise))), np.zeros((runs, n_e, n_e))
     gradient, cost = np.zeros((runs, n_e)), np.zeros(runs)
-    own, pull, by = np.empty((_OWN, _OWN)), np.empty(_OWN), np.empty((each, _OWN))
-    shown, whole, total = np.empty(each), np.empty((12, 12)), np.empty(12)
-    moved = np.empty((12, 14))
+    by, shown = np.empty((each, _OWN)), np.empty(each)
+    own, pull = np.empty((_OWN, 3)), np.empty(_OWN)
+    whole, total, moved = np.empty((12, 12)), np.empty(12), np.empty((12, 14))
     for run in range(runs):
         for k in range(epochs):
             state, turn = states[run, k], _matrix(states[run, k, 9:13])
+            at = turning[run, k], centre[k]
             whole[:], total[:] = 0.0, 0.0
             for point in range(points):
                 _rows(state, turn, state[15 + 3 * point : 18 + 3 * point], camera, rows, shown, by)
@@ -52,27 +53,30 @@ def point_sums(
                     residual[run, k, m] = left
                     left *= weight[run, k, m]
                     cost[run] += left * left
-                    scale = weight[run, k, m] / noise[m]
-                    for a in range(_OWN):
-                        by[i, a] *= scale
-                    for a in range(_OWN):
-                        if by[i, a] != 0.0:
-                            pull[a] += by[i, a] * left
-                            for b in range(_OWN):
-                                own[a, b] += by[i, a] * by[i, b]
+                    _add_row(by[i], weight[run, k, m] / noise[m], left, whole, own, pull)
                 first = 14 + 3 * point
-                _add_own(own, pull, turning[run, k], centre[k], first, information[run])
-                gradient[run, first : first + 3] += pull[12:]
                 total += pull[:12]
-                for a in range(12):
-                    for b in range(12):
-                        whole[a, b] += own[a, b]
-            at = turning[run, k], centre[k]
+                gradient[run, first : first + 3] += pull[12:]
+                _add_own(own, *at, first, information[run])
             _add_whole(whole, total, *at, moved, information[run], gradient[run])
-        for a in range(14):
-            for b in range(14, n_e):
-                information[run, b, a] = information[run, a, b]
+        for a in range(n_e):
+            for b in range(a):
+                information[run, a, b] = information[run, b, a]
     return residual, information, gradient, cost
+
+
+@compiled
+def _add_row(by: Array, scale: float, left: float, whole: Array, own: Array, pull: Array) -> None:
+    """Add a row's squares: of the motion, above the diagonal, and with its point."""
+    for a in range(_OWN):
+        by[a] *= scale
+    for a in range(_OWN):
+        if by[a] != 0.0:
+            pull[a] += by[a] * left
+            for b in range(a, 12):
+                whole[a, b] += by[a] * by[b]
+            for b in range(3):
+                own[a, b] += by[a] * by[12 + b]
 
 
 @compiled
@@ -123,19 +127,18 @@ def _write(
 
 
 @compiled
-def _add_own(
-    own: Array, pull: Array, turning: Array, centre: Array, first: int, information: Array
-) -> None:
+def _add_own(own: Array, turning: Array, centre: Array, first: int, information: Array) -> None:
     """Add what a point has with the motion, and by itself."""
-    for c in range(3):
-        for a in range(6):
-            left, right = own[a, 12 + c], own[6 + a, 12 + c]
-            for b in range(6):
-                information[b, first + c] += centre[a, b] * left
-            for b in range(8):
-                information[6 + b, first + c] += turning[a, b] * right
-        for b in range(3):
-            information[first + c, first + b] += own[12 + c, 12 + b]
+    for a in range(6):
+        for b in range(6):
+            for c in range(3):
+                information[b, first + c] += centre[a, b] * own[a, c]
+        for b in range(8):
+            for c in range(3):
+                information[6 + b, first + c] += turning[a, b] * own[6 + a, c]
+    for b in range(3):
+        for c in range(3):
+            information[first + b, first + c] += own[12 + b, c]
 
 
 @compiled
@@ -152,18 +155,20 @@ def _add_whole(
     moved[:] = 0.0
     for a in range(12):
         for c in range(6):
+            left = whole[a, c] if a < c else whole[c, a]
+            right = whole[a, 6 + c] if a < 6 + c else whole[6 + c, a]
             for b in range(6):
-                moved[a, b] += whole[a, c] * centre[c, b]
+                moved[a, b] += left * centre[c, b]
             for b in range(8):
-                moved[a, 6 + b] += whole[a, 6 + c] * turning[c, b]
+                moved[a, 6 + b] += right * turning[c, b]
     for c in range(6):
         for a in range(6):
             gradient[a] += centre[c, a] * total[c]
-            for b in range(14):
+            for b in range(a, 14):
                 information[a, b] += centre[c, a] * moved[c, b]
         for a in range(8):
             gradient[6 + a] += turning[c, a] * total[6 + c]
-            for b in range(14):
+            for b in range(6 + a, 14):
                 information[6 + a, b] += turning[c, a] * moved[6 + c, b]
 
 
