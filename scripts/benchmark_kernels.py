@@ -20,18 +20,25 @@ from rich.table import Table
 
 from debrisest import compiled
 from debrisest.batch.arc import Arc, course
+from debrisest.clock import Clock
 from debrisest.dynamics.log_inertia import log_ratios
+from debrisest.filters.replay.measured_arc import linearize, measured_arc
+from debrisest.filters.replay.replay import replay
+from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.camera_range import model as camera_range
+from debrisest.problems.stereo_pose import model as stereo_pose
+from debrisest.problems.stereo_pose.replay import replay_model
+from debrisest.problems.stereo_pose.truth import draw_guess
 
 RATE, MOMENTS = np.radians([7.2, 5.525, -1.624]), np.array([0.618, 0.707, 0.345])
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
-CALLS = 10
+CALLS, LONGEST = 10, 0.5  # of a round, the latter in s
 
 Kernel = Callable[[], Any]
 
 
 def kernels() -> dict[str, Kernel]:
-    """Return what the loops replace, by name."""
+    """Return what the loops replace, by name (two kernels have rows for one run)."""
     arc = Arc(300.0, IDENTITY, RATE, log_ratios(np.diag(MOMENTS)))
     times = {count: np.arange(float(count)) for count in (10, 300, 1500)}
     core = np.zeros((20, camera_range.LOG_INERTIA.stop))
@@ -47,6 +54,42 @@ def kernels() -> dict[str, Kernel]:
             orbit, core, 1165, 1
         ),
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
+        **{f"{name} ": kernel for name, kernel in of_replay().items()},
+    }
+
+
+def of_replay() -> dict[str, Kernel]:
+    """Return those of the replay filter on the stereo pose problem, and the filter itself."""
+    runs, epochs = 100, 101
+    draws = np.random.default_rng(3)
+    start = np.zeros((runs, 30))
+    start[:, :9] = [10, 60, 10, 0.01, -0.0225, -0.01, *np.radians([-0.1, -0.1, 0.034])]
+    start[:, 9:15] = [0, 0, 0, 1, -0.186, -0.0797]
+    start[:, 15:] = draws.uniform(-1.5, 1.5, (runs, 15))
+    known = stereo_pose.stereo_geometry(Clock.regular(epochs, 1.0), 7.17e6, 0.05, 0.0)
+    variance = np.repeat([1.0, np.radians(1) ** 2, 4e-5, 0.5, 1.0], [6, 3, 3, 2, 15])
+    with patch.object(compiled, "available", lambda: True):
+        fast = replay_model(known, np.full(45, 1e-5), np.sqrt(variance))
+    guess = draw_guess(start, 1e-4 * np.insert(variance, 9, 4e-5), draws.normal(size=start.shape))
+    shown = fast.shown(start, epochs - 1)[1]
+    covariance = np.tile(1e-4 * np.diag(variance), (runs, 1, 1))
+    data = guess, covariance, shown + 1e-5 * draws.normal(size=shown.shape)
+    arc = measured_arc(fast, *data)
+
+    def model() -> ReplayModel:
+        return fast if compiled.available() else fast._replace(sums=None)
+
+    return {
+        "stereo pose, motion and sensitivities of 100 runs, 101 epochs": lambda: fast.trajectory(
+            guess, 0, epochs - 1
+        )[1],
+        "the same, one step": lambda: fast.trajectory(guess, 3, 4)[1],
+        "the same, one run of 101 epochs": lambda: fast.trajectory(guess[:1], 0, epochs - 1)[1],
+        "stereo pose, linearised cost of 100 runs, 101 epochs": lambda: (
+            linearize(model(), arc, guess, epochs - 1).information
+        ),
+        "replay, 100 runs of 101 epochs": lambda: replay(model(), *data).state,
+        "the same, one run": lambda: replay(model(), *(each[:1] for each in data)).state,
     }
 
 
@@ -59,9 +102,11 @@ def compared(kernel: Kernel, rounds: int) -> tuple[list[float], list[float], flo
 
     def cost(loops: bool) -> float:
         before = time.process_time()
-        for _ in range(CALLS):
+        calls = 0
+        while calls < CALLS and time.process_time() - before < LONGEST:
             by(loops)
-        return 1e6 * (time.process_time() - before) / CALLS
+            calls += 1
+        return 1e6 * (time.process_time() - before) / calls
 
     gap = max(np.abs(a - b).max() / np.abs(a).max() for a, b in zip(by(False), by(True)))
     plain, fast = zip(*((cost(False), cost(True)) for _ in range(rounds)))

@@ -8,6 +8,7 @@ for the inertial ones.
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
@@ -32,15 +33,20 @@ def rotation_arc(
     total = rate_l + spin[0]
     arc = torque_free_arc(times, q_lt, (to_body @ total[..., None])[..., 0], k)
     half = 0.5 * (leader.anomaly - leader.anomaly[0])
+    by_start = np.zeros((len(k), 1, 5, _TURNING))
+    by_start[:, 0, :3, :3] = to_body
+    by_start[:, 0, :3, 3:6] = to_body @ matrix_of_cross(total)
+    by_start[:, 0, 3:, 6:] = np.eye(2)
+    if compiled.available():
+        from debrisest.dynamics.relative_arc_loops import relative
+
+        orbit = np.stack([np.cos(half), np.sin(half), leader.rate], axis=-1)
+        return relative(*arc[:2], arc[2:], by_start[:, 0], orbit)
     zero = np.zeros_like(half)
     q_li = np.stack([np.cos(half), zero, zero, -np.sin(half)], axis=-1)
     q = quaternion.multiply(q_li, arc.q_ib)
     turn, to_l = quaternion.to_matrix(q), quaternion.to_matrix(q_li)
     whole_rate = (turn @ arc.rate_b[..., None])[..., 0]
-    by_start = np.zeros((len(k), 1, 5, _TURNING))
-    by_start[:, 0, :3, :3] = to_body
-    by_start[:, 0, :3, 3:6] = to_body @ matrix_of_cross(total)
-    by_start[:, 0, 3:, 6:] = np.eye(2)
     sensitivity = np.empty((*q.shape[:2], 6, _TURNING))
     turned = arc.turn_by_start @ by_start
     turned[..., 3:6] += np.eye(3)

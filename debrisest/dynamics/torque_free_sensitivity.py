@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.dynamics import inertia_ratios
@@ -46,6 +47,13 @@ def torque_free_arc(times: Array, q0: Array, rate0: Array, k: Array) -> Arc:
     count = substeps(np.linalg.norm(rate0, axis=-1), longest)
     runs, epochs = len(q0), len(times)
     result = Arc(*(np.empty((runs, epochs, *shape)) for shape in ((4,), (3,), (3, _BY), (3, _BY))))
+    if compiled.available():
+        from debrisest.dynamics.torque_free_sensitivity_loops import arcs
+
+        of_body = inertia_ratios.moments(k), inertia_ratios.slopes(k)
+        by_ratios = inertia_ratios.acceleration_by_ratios(np.ones((runs, 3)), k)
+        arcs(times, (q0, rate0), (*of_body, by_ratios), count, result)
+        return result
     for parts in np.unique(count):
         chosen = np.flatnonzero(count == parts)
         found = _divided(times, q0[chosen], rate0[chosen], k[chosen], int(parts))

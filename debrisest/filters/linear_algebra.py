@@ -37,6 +37,17 @@ def scaled_inverse(matrix: Array) -> Array:
     return 0.5 * both * (inverse + np.swapaxes(inverse, -1, -2))
 
 
+def inverse_of_some_rows(matrix: Array) -> Array:
+    """Inverse ``(run, n_e, n_e)`` of matrices of which many rows are those of the unit matrix."""
+    unit = np.eye(matrix.shape[-1])
+    moved = np.flatnonzero((matrix != unit).any((0, 2)))
+    rows, own = -matrix[:, moved], matrix[:, moved][..., moved]
+    rows[..., moved] = np.eye(len(moved))
+    inverse = np.repeat(unit[None], len(matrix), axis=0)
+    inverse[:, moved] = solve(own, rows)
+    return inverse
+
+
 def square_root(covariance: Array) -> tuple[Array, BoolArray]:
     """Lower triangular factor per run, and which runs had to be repaired to have one."""
     try:

@@ -6,10 +6,9 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.filters import weights
-from debrisest.filters.linear_algebra import scaled_inverse, scaled_solve
+from debrisest.filters.linear_algebra import inverse_of_some_rows, scaled_inverse, scaled_solve
 from debrisest.filters.replay.gauss_newton import Solution
-from debrisest.filters.replay.measured_arc import MeasuredArc
-from debrisest.filters.replay.normal_equations import normal_equations
+from debrisest.filters.replay.measured_arc import MeasuredArc, sums
 from debrisest.filters.replay_model import ReplayModel
 
 _ITERATIONS, _CONVERGED = 3, 1e-3
@@ -35,7 +34,8 @@ def predict(model: ReplayModel, belief: Belief, k: int) -> Belief:
     states, sensitivity = model.trajectory(belief.state, k - 1, k)
     state = states[:, -1]
     transition = model.transition(sensitivity[:, -1], k - 1, k)
-    back = model.chart(belief.state) @ np.linalg.inv(transition) @ model.inverse_chart(state)
+    inverse = inverse_of_some_rows(transition)
+    back = model.chart(belief.state) @ inverse @ model.inverse_chart(state)
     return Belief(state, np.swapaxes(back, -1, -2) @ belief.information @ back)
 
 
@@ -56,19 +56,23 @@ def update(
     for iteration in range(_ITERATIONS):
         at = state[runs]
         part = model.of(runs)
-        states, sensitivity = part.trajectory(at, k, k)
-        shown, derivative = part.rows(states, sensitivity, k, np.array([k]))
+        place = *part.trajectory(at, k, k), k, np.array([k])
         back = part.inverse_chart(at)
-        rows = derivative / model.sigma[:, None] @ back[:, None]
-        residual = arc.measured[runs, frame] - shown / model.sigma
         if gate and iteration == 0:
+            shown, derivative = part.rows(*place)
+            residual, rows = (
+                arc.measured[:, frame] - shown / model.sigma,
+                derivative @ back[:, None],
+            )
             spread = scaled_inverse(predicted.information)[:, None]
+            rows /= model.sigma[:, None]
             arc.weight[:, frame] *= weights.innovation_gate(residual, rows, spread)
-        terms = normal_equations(rows, residual, arc.weight[runs, frame])
-        total = predicted.information[runs] + terms[0]
+        _, *terms = sums(part, place, arc.measured[runs, frame], arc.weight[runs, frame])
+        to_plain = np.swapaxes(back, -1, -2)
+        total = predicted.information[runs] + to_plain @ terms[0] @ back
         offset = part.difference(predicted.state[runs], at)
         pull = (predicted.information[runs] @ offset[..., None])[..., 0]
-        right = terms[1] + pull
+        right = (to_plain @ terms[1][..., None])[..., 0] + pull
         step = scaled_solve(total, right)
         decrement = (step * right).sum(-1)
         nis[runs] = terms[2] + (offset * pull).sum(-1) - decrement

@@ -75,37 +75,53 @@ def linearize(model: ReplayModel, arc: MeasuredArc, state: Array, last: int) -> 
     offset = model.plain_difference(arc.prior, state)
     gradient = (arc.information @ offset[..., None])[..., 0]
     cost = (offset * gradient).sum(-1)
-    information = arc.information.copy()
-    residual = np.empty((len(state), last + 1, arc.measured.shape[-1]))
-    for begin in range(0, len(state), _RUNS):
-        runs = np.arange(begin, min(begin + _RUNS, len(state)))
-        part = model.of(runs)
-        for first in range(0, last + 1, _EPOCHS):
-            epochs = np.arange(first, min(first + _EPOCHS, last + 1))
-            some = slice(begin, begin + _RUNS), slice(first, first + len(epochs))
-            residual[some], *terms = _sums(
-                part,
-                (states[some], sensitivity[some], 0, epochs),
-                arc.measured[some],
-                arc.weight[some],
-            )
-            information[some[0]] += terms[0]
-            gradient[some[0]] += terms[1]
-            cost[some[0]] += terms[2]
-    residual[~arc.seen[:, : last + 1]] = 0.0
+    epochs = slice(last + 1)
+    residual, *terms = _in_blocks(
+        model, states, sensitivity, arc.measured[:, epochs], arc.weight[:, epochs]
+    )
+    residual[~arc.seen[:, epochs]] = 0.0
     return Linearization(
         state=state.copy(),
-        cost=cost,
-        information=information,
-        gradient=gradient,
+        cost=cost + terms[2],
+        information=arc.information + terms[0],
+        gradient=gradient + terms[1],
         last_state=states[:, -1].copy(),
         last_sensitivity=sensitivity[:, -1].copy(),
         residual=residual,
     )
 
 
-def _sums(model: ReplayModel, at: Place, measured: Array, weight: Array) -> tuple[Array, ...]:
-    """Normalised residuals of some epochs, and their normal equations."""
+def _in_blocks(
+    model: ReplayModel, states: Array, sensitivity: Array, measured: Array, weight: Array
+) -> tuple[Array, ...]:
+    """`sums` of all epochs from 0 on."""
+    runs, epochs = measured.shape[:2]
+    if model.sums is not None:
+        return model.sums(states, sensitivity, 0, np.arange(epochs), measured, weight)
+    n_e = len(model.error_names)
+    residual, information = np.empty(measured.shape), np.zeros((runs, n_e, n_e))
+    gradient, cost = np.zeros((runs, n_e)), np.zeros(runs)
+    for begin in range(0, runs, _RUNS):
+        part = model.of(np.arange(begin, min(begin + _RUNS, runs)))
+        for first in range(0, epochs, _EPOCHS):
+            block = np.arange(first, min(first + _EPOCHS, epochs))
+            some = slice(begin, begin + _RUNS), slice(first, first + _EPOCHS)
+            at = states[some], sensitivity[some], 0, block
+            residual[some], *terms = sums(part, at, measured[some], weight[some])
+            information[some[0]] += terms[0]
+            gradient[some[0]] += terms[1]
+            cost[some[0]] += terms[2]
+    return residual, information, gradient, cost
+
+
+def sums(model: ReplayModel, at: Place, measured: Array, weight: Array) -> tuple[Array, ...]:
+    """Normalised residuals (run, epoch, m) of some epochs, and their normal equations.
+
+    These are information (run, n_e, n_e), gradient (run, n_e) and cost (run,), by the plain errors
+    of the epoch that `at` starts from.
+    """
+    if model.sums is not None:
+        return model.sums(*at, measured, weight)
     if model.point_rows is None:
         predicted, derivative = model.rows(*at)
         residual = measured - predicted / model.sigma

@@ -13,7 +13,7 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray, Data, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter, joined
-from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.linear_algebra import inverse_of_some_rows, scaled_inverse
 from debrisest.filters.replay.cost import Reference, reference_of
 from debrisest.filters.replay.frame_update import Belief, first_frame, predict, update
 from debrisest.filters.replay.gauss_newton import CONVERGED, Solution, move
@@ -225,7 +225,7 @@ def _belief(model: ReplayModel, solution: Solution, k: int) -> Belief:
     transition = model.transition(at.last_sensitivity, 0, k)
     to_chart = model.chart(at.last_state) @ transition
     state = model.retract(at.last_state, (to_chart @ solution.step[..., None])[..., 0])
-    back = np.linalg.inv(transition) @ model.inverse_chart(at.last_state)
+    back = inverse_of_some_rows(transition) @ model.inverse_chart(at.last_state)
     return Belief(state, np.swapaxes(back, -1, -2) @ at.information @ back)
 
 

@@ -12,10 +12,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
+from debrisest.dynamics.kepler import MU_EARTH
 from debrisest.dynamics.relative_arc import rotation_arc
 from debrisest.dynamics.relative_orbit import translation_step
 from debrisest.dynamics.relative_pose import exact_rotation
@@ -164,6 +166,8 @@ def _epochs(first: int, last: int) -> IntArray:
 
 def _translation(known: StereoGeometry, state: Array, epochs: IntArray) -> tuple[Array, Array]:
     """Positions and velocities ``(run, epoch, 3)`` of epochs in a row from that of ``state`` on."""
+    if compiled.available():
+        return _translation_compiled(known, state, epochs)
     positions, velocities = np.empty((2, len(state), len(epochs), 3))
     position, velocity = state[:, POSITION], state[:, VELOCITY]
     positions[:, 0], velocities[:, 0] = position, velocity
@@ -173,6 +177,19 @@ def _translation(known: StereoGeometry, state: Array, epochs: IntArray) -> tuple
         position, velocity = translation_step(position, velocity, leader, step)
         positions[:, i], velocities[:, i] = position, velocity
     return positions, velocities
+
+
+def _translation_compiled(
+    known: StereoGeometry, state: Array, epochs: IntArray
+) -> tuple[Array, Array]:
+    from debrisest.dynamics.relative_orbit_loops import translations
+
+    way = 1 if epochs[-1] >= epochs[0] else -1
+    leader = known.leader.at(np.arange(2 * epochs[0], 2 * epochs[-1] + way, way))
+    steps = way * known.steps[np.minimum(epochs[:-1], epochs[1:])]
+    orbit = np.stack([leader.radius, leader.rate, leader.acceleration], -1)
+    moved = translations(state[:, : VELOCITY.stop].copy(), orbit, steps, MU_EARTH)
+    return moved[..., POSITION], moved[..., VELOCITY]
 
 
 def _geometry(state: Array, points: int) -> tuple[Array, Array, Array, Array]:

@@ -2,11 +2,13 @@
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import transitions
+from debrisest.filters.replay.normal_equations import normal_equations
 from debrisest.filters.replay_model import PointRows, ReplayModel
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose.doubts import doubts
@@ -42,6 +44,12 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
     def at_epochs(states: Array, turning: Array, first: int, epochs: IntArray) -> PointRows:
         return point_rows(known, states, turning, centre[epochs] @ back[first], epochs)
 
+    def sums(
+        states: Array, turning: Array, first: int, epochs: IntArray, measured: Array, weight: Array
+    ) -> tuple[Array, ...]:
+        at = states, turning, centre[epochs] @ back[first], epochs
+        return _compiled(known, sigma, at, measured, weight)
+
     return ReplayModel(
         trajectory=lambda state, first, last: chart.propagate(known, state, first, last),
         rows=lambda *at: _dense(at_epochs(*at)),
@@ -65,8 +73,35 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
         displace=lambda state, error: chart.displace(state, error, points),
         mirror=lambda state: mirror(state, points),
         point_rows=at_epochs,
+        sums=sums if compiled.available() else None,
         course=lambda state, last: _course(known, state, last),
     )
+
+
+def _compiled(
+    known: StereoGeometry,
+    sigma: Array,
+    at: tuple[Array, Array, Array, IntArray],
+    measured: Array,
+    weight: Array,
+) -> tuple[Array, ...]:
+    """Normal equations of what `point_rows` gives of ``at``, by compiled loops."""
+    from debrisest.problems.stereo_pose.replay_loops import point_sums
+
+    count = known.points * len(known.rows)
+    camera = np.eye(3) if known.to_camera is None else known.to_camera.copy(), known.baseline
+    states, turning, centre = (np.ascontiguousarray(part) for part in at[:3])
+    points = (np.ascontiguousarray(part[..., :count]) for part in (measured, weight))
+    found = point_sums(states, turning, centre, camera, known.rows, sigma[:count], *points)
+    if not known.shown.acceleration:
+        return found
+    shown, by_rest = _acceleration_rows(known, states, turning, at[-1])
+    left = measured[..., count:] - shown / sigma[count:]
+    rest = normal_equations(by_rest / sigma[count:, None], left, weight[..., count:])
+    residual, information, gradient, cost = found
+    information[:, :14, :14] += rest[0]
+    gradient[:, :14] += rest[1]
+    return np.concatenate([residual, left], -1), information, gradient, cost + rest[2]
 
 
 def _course(known: StereoGeometry, state: Array, last: int) -> tuple[Array, Array]:

@@ -1,0 +1,75 @@
+"""The compiled loops of the stereo pose problem against the numpy code, whose oracles are near."""
+
+import numpy as np
+import pytest
+
+from debrisest import compiled
+from debrisest.dynamics.torque_free_sensitivity import torque_free_arc
+from debrisest.filters.replay.measured_arc import linearize, measured_arc
+from debrisest.problems.stereo_pose.model import Shown
+
+pytest.importorskip("numba")
+
+TURNED = (0.5, -0.5, 0.5, 0.5)
+
+
+def both(monkeypatch: pytest.MonkeyPatch, function):
+    """Return what a function gives with numba and without."""
+    with monkeypatch.context() as patch:
+        patch.setattr(compiled, "available", lambda: True)
+        fast = function()
+        patch.setattr(compiled, "available", lambda: False)
+        return fast, function()
+
+
+def same(fast, slow, rtol: float = 1e-12) -> None:
+    """Hold arrays to a part of the largest number in each."""
+    for one, other in zip(fast, slow):
+        np.testing.assert_allclose(one, other, atol=rtol * np.abs(other).max(initial=1e-300))
+
+
+@pytest.mark.parametrize("speed", [1e-9, 0.02, 0.4])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_arcs_of_torque_free_rotation_are_the_same(monkeypatch, speed, way) -> None:
+    draws = np.random.default_rng(3)
+    times = way * np.concatenate([[5.0], 5.0 + np.cumsum(draws.uniform(0.2, 2.0, 60))])
+    q = draws.normal(size=(8, 4))
+    start = q / np.linalg.norm(q, axis=-1, keepdims=True), speed * draws.normal(size=(8, 3))
+    ratios = 0.2 * draws.normal(size=(8, 2))
+    ratios[0] = 0.0
+    same(*both(monkeypatch, lambda: torque_free_arc(times, *start, ratios)))
+
+
+@pytest.mark.parametrize("q_lc", [(1, 0, 0, 0), TURNED])
+@pytest.mark.parametrize(("first", "last"), [(0, 11), (7, 3), (4, 4), (4, 5)])
+def test_arcs_relative_to_the_leader_are_the_same(monkeypatch, experiment, q_lc, first, last):
+    test = experiment(3, 12, 1, q_lc=q_lc)
+    same(*both(monkeypatch, lambda: test.model.trajectory(test.prior, first, last)))
+    same(*both(monkeypatch, lambda: test.model.shown(test.prior, last)))
+    same(*both(monkeypatch, lambda: (test.model.rewind(test.prior, last),)))
+
+
+@pytest.mark.parametrize("shown", [Shown(), Shown(flow=False), Shown(acceleration=True)])
+@pytest.mark.parametrize("q_lc", [(1, 0, 0, 0), TURNED])
+def test_linearised_costs_are_the_same(monkeypatch, experiment, shown, q_lc) -> None:
+    def found():
+        test = experiment(3, 20, 2, shown=shown, q_lc=q_lc)
+        assert (test.model.sums is not None) == compiled.available()
+        arc = measured_arc(test.model, test.prior, test.covariance, test.measured)
+        arc.weight[:, 5:9] *= 0.3
+        return linearize(test.model, arc, test.prior, 14)
+
+    same(*both(monkeypatch, found))
+
+
+@pytest.mark.parametrize("options", [{}, {"gate": True}])
+def test_estimates_are_the_same(monkeypatch, experiment, options) -> None:
+    def found():
+        return experiment(3, 30, 4).estimate(**options, keep=[10])
+
+    fast, slow = both(monkeypatch, found)
+    apart = np.abs(fast.state[..., :9] - slow.state[..., :9])
+    assert np.nanmax(apart / slow.sigma[..., :9]) < 1e-6
+    np.testing.assert_allclose(fast.sigma, slow.sigma, rtol=1e-6)
+    np.testing.assert_allclose(fast.nis, slow.nis, rtol=1e-5, atol=1e-6)
+    np.testing.assert_array_equal(fast.status, slow.status)
