@@ -85,7 +85,8 @@ def nearest(matrix: Array) -> Array:
         value -= np.maximum(step, 0.0)
         if not np.any(step > 1e-13):
             break
-    inverse = np.linalg.inv((value + _ABOVE)[..., None, None] * np.eye(4) - davenport)
+    above = (value + _ABOVE)[..., None, None] * np.eye(4)
+    inverse = np.asarray(np.linalg.inv(above - davenport), dtype=np.float64)
     row = _largest_row(inverse)[..., None]
     return _positive((inverse @ (inverse @ row / _length(row[..., 0])[..., None]))[..., 0])
 

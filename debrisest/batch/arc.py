@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest import compiled
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.dynamics import log_inertia
 from debrisest.dynamics.torque_free import torque_free
@@ -100,6 +100,11 @@ def moved(arc: Arc, epoch: float) -> Arc:
 def stacked(arcs: Sequence[Arc]) -> Arc:
     """Return arcs of one epoch as copies (arc, ...) of one."""
     return Arc(arcs[0].epoch, *(np.stack(parts) for parts in zip(*(arc[1:] for arc in arcs))))
+
+
+def chosen(arcs: Arc, which: int | IntArray | list[int]) -> Arc:
+    """Return some of the copies."""
+    return Arc(arcs.epoch, *(part[which] for part in arcs[1:]))
 
 
 def joined(*arcs: Arc) -> Arc:

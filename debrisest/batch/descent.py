@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array
-from debrisest.batch.arc import INERTIA, UNKNOWNS, Arc, Course, along, course, displaced, stacked
+from debrisest.arrays import Array, BoolArray, IntArray
+from debrisest.batch.arc import INERTIA, UNKNOWNS, Arc, along, chosen, course, displaced, stacked
 from debrisest.batch.evidence import Evidence, Normal
 
 PRIOR_SIGMA = 0.8
@@ -30,7 +30,6 @@ class Prior(NamedTuple):
     """(5, 5)."""
 
 
-_NOWHERE = Normal(np.inf, np.zeros(UNKNOWNS), np.zeros((UNKNOWNS, UNKNOWNS)))
 NOTHING_ELSE = Prior(np.zeros(5), np.zeros((5, 5)))
 
 
@@ -64,47 +63,76 @@ def descend_all(
 
     A descent ends where its next step would lower the chi-square by less than ``least_gain``.
     """
-    held = held or [NOTHING_ELSE] * len(arcs)
-    starts = zip(arcs, held, _normals(evidence, arcs, held))
-    walks = [_Walk(arc, prior, *normal) for arc, prior, normal in starts]
+    walks = _Walks(evidence, stacked(arcs), held or [NOTHING_ELSE] * len(arcs))
     for _ in range(iterations):
-        tried = [
-            (walk, walk.next(evidence.unknowns_fixed, least_gain))
-            for walk in walks
-            if not walk.ended
-        ]
-        going = [(walk, arc) for walk, arc in tried if not walk.ended]
-        if not going:
+        if not walks.go_on(least_gain):
             break
-        normals = _normals(evidence, [arc for _, arc in going], [walk.held for walk, _ in going])
-        for (walk, arc), (normal, total) in zip(going, normals):
-            walk.judge(arc, normal, total)
-    return [Descent(walk.arc, walk.normal.chi2, walk.normal.hold, walk.settled) for walk in walks]
+    return walks.ends()
 
 
-class _Walk:
-    """A descent on its way."""
+class _Walks:
+    """Descents on their way; all arrays have the descent first."""
 
-    def __init__(self, arc: Arc, held: Prior, normal: Normal, lowest: float) -> None:
-        self.arc, self.held, self.normal, self.lowest = arc, held, normal, lowest
-        self.damping = 1e-6
-        self.settled = self.ended = False
+    def __init__(self, evidence: Evidence, arcs: Arc, held: Sequence[Prior]) -> None:
+        self.evidence, self.arcs = evidence, arcs
+        self.held = Prior(*(np.stack(parts) for parts in zip(*held)))
+        count = len(held)
+        self.normal, self.lowest = self._at(arcs, np.arange(count))
+        self.damping = np.full(count, 1e-6)
+        self.settled, self.ended = np.zeros((2, count), dtype=bool)
 
-    def next(self, fixed: int, least_gain: float) -> Arc:
-        """Return the arc to try; the walk ends where that would gain nothing."""
-        step, gain = _step(self.normal, self.damping, fixed)
-        self.settled = self.ended = gain < least_gain
-        return displaced(self.arc, step)
+    def go_on(self, least_gain: float) -> bool:
+        """Take the next steps, shorter ones after those that went up; whether any was taken.
 
-    def judge(self, arc: Arc, normal: Normal, total: float) -> None:
-        """Go to a better arc, or try a shorter step next."""
-        if total < self.lowest:
-            self.arc, self.normal, self.lowest = arc, normal, total
-            self.damping = max(0.1 * self.damping, _LEAST_DAMPING)
-        elif self.damping > _MOST_DAMPING:
-            self.ended = True
-        else:
-            self.damping = max(10.0 * self.damping, 1e-6)
+        A descent ends where that would gain nothing.
+        """
+        going = np.flatnonzero(~self.ended)
+        normal = Normal(*(part[going] for part in self.normal))
+        step, gain = _steps(normal, self.damping[going], self.evidence.unknowns_fixed)
+        settled = gain < least_gain
+        self.settled[going] = self.ended[going] = settled
+        going, step = going[~settled], step[~settled]
+        if not len(going):
+            return False
+        arcs = displaced(chosen(self.arcs, going), step)
+        normal, total = self._at(arcs, going)
+        lower = total < self.lowest[going]
+        better, worse = going[lower], going[~lower]
+        for old, new in zip((*self.arcs[1:], *self.normal), (*arcs[1:], *normal)):
+            old[better] = new[lower]
+        self.lowest[better] = total[lower]
+        self.ended[worse] = self.damping[worse] > _MOST_DAMPING
+        self.damping[better] = np.maximum(0.1 * self.damping[better], _LEAST_DAMPING)
+        self.damping[worse] = np.maximum(10.0 * self.damping[worse], 1e-6)
+        return True
+
+    def ends(self) -> list[Descent]:
+        """Return where they are."""
+        chi2, _, hold = self.normal
+        return [
+            Descent(chosen(self.arcs, k), float(chi2[k]), hold[k], bool(self.settled[k]))
+            for k in range(len(chi2))
+        ]
+
+    def _at(self, arcs: Arc, which: IntArray) -> tuple[Normal, Array]:
+        """Return normal equations and costs, infinite where no body is looked for."""
+        count = len(which)
+        normal = Normal(
+            np.full(count, np.inf),
+            np.zeros((count, UNKNOWNS)),
+            np.zeros((count, UNKNOWNS, UNKNOWNS)),
+        )
+        sought = np.flatnonzero(_sought(arcs))
+        total = np.full(count, np.inf)
+        if len(sought):
+            part, held = chosen(arcs, sought), Prior(*(p[which[sought]] for p in self.held))
+            with np.errstate(over="ignore", invalid="ignore"):
+                found = self.evidence.normal(course(part, self.evidence.times))
+            found, cost = _with_prior(found, part.log_inertia, held)
+            total[sought] = cost
+            for whole, new in zip(normal, found):
+                whole[sought] = new
+        return normal, total
 
 
 def covariance(hold: Array, fixed: int = 0) -> Array:
@@ -120,55 +148,38 @@ def covariance(hold: Array, fixed: int = 0) -> Array:
 def costs(evidence: Evidence, arcs: Sequence[Arc]) -> Array:
     """Return chi-squares (arc,) with the wide prior, infinite where no body is looked for."""
     result = np.full(len(arcs), np.inf)
-    sought = [k for k, arc in enumerate(arcs) if _sought(arc)]
-    if sought:
+    sought = np.flatnonzero([_sought(arc) for arc in arcs])
+    if len(sought):
+        part = stacked([arcs[k] for k in sought])
         with np.errstate(over="ignore", invalid="ignore"):
-            motions = along(stacked([arcs[k] for k in sought]), evidence.times)
-            for k, q, rate in zip(sought, *motions):
-                result[k] = evidence.chi2(q, rate) + _prior(arcs[k], NOTHING_ELSE)
+            chi2 = evidence.chi2(*along(part, evidence.times))
+        result[sought] = chi2 + np.sum(part.log_inertia**2, axis=-1) / PRIOR_SIGMA**2
     return np.where(np.isfinite(result), result, np.inf)
 
 
-def _normals(
-    evidence: Evidence, arcs: Sequence[Arc], held: Sequence[Prior]
-) -> list[tuple[Normal, float]]:
-    """Return the normal equations and the cost of each, infinite where no body is looked for."""
-    result = [(_NOWHERE, np.inf)] * len(arcs)
-    sought = [k for k, arc in enumerate(arcs) if _sought(arc)]
-    if sought:
-        with np.errstate(over="ignore", invalid="ignore"):
-            courses = course(stacked([arcs[k] for k in sought]), evidence.times)
-            for k, parts in zip(sought, zip(*courses)):
-                result[k] = _with_prior(evidence.normal(Course(*parts)), arcs[k], held[k])
-    return result
+def _with_prior(normal: Normal, log_inertia: Array, held: Prior) -> tuple[Normal, Array]:
+    """Return normal equations with what else is held, and costs."""
+    off = log_inertia - held.centre
+    pulled = (held.information @ off[..., None])[..., 0]
+    normal.pull[:, INERTIA] -= log_inertia * PRIOR_SIGMA**-2 + pulled
+    normal.hold[:, INERTIA, INERTIA] += PRIOR_SIGMA**-2 * np.eye(5) + held.information
+    wide = np.sum(log_inertia**2, axis=-1) / PRIOR_SIGMA**2
+    total = normal.chi2 + wide + np.sum(off * pulled, axis=-1)
+    return normal, np.where(np.isfinite(total), total, np.inf)
 
 
-def _with_prior(normal: Normal, arc: Arc, held: Prior) -> tuple[Normal, float]:
-    pull, hold = normal.pull.copy(), normal.hold.copy()
-    pull[INERTIA] -= arc.log_inertia * PRIOR_SIGMA**-2
-    pull[INERTIA] -= held.information @ (arc.log_inertia - held.centre)
-    hold[INERTIA, INERTIA] += PRIOR_SIGMA**-2 * np.eye(5) + held.information
-    total = normal.chi2 + _prior(arc, held)
-    return Normal(normal.chi2, pull, hold), total if np.isfinite(total) else np.inf
+def _sought(arcs: Arc) -> BoolArray:
+    return np.asarray(np.linalg.norm(arcs.log_inertia, axis=-1) < _WIDEST)
 
 
-def _sought(arc: Arc) -> bool:
-    return bool(np.linalg.norm(arc.log_inertia) < _WIDEST)
-
-
-def _prior(arc: Arc, held: Prior) -> float:
-    off = arc.log_inertia - held.centre
-    wide = float(np.sum(arc.log_inertia**2)) / PRIOR_SIGMA**2
-    return wide + float(off @ held.information @ off)
-
-
-def _step(normal: Normal, damping: float, fixed: int) -> tuple[Array, float]:
-    """Step (11,), and by how much it should lower the chi-square."""
+def _steps(normal: Normal, damping: Array, fixed: int) -> tuple[Array, Array]:
+    """Steps (arc, 11), and by how much they should lower the chi-squares (arc,)."""
     free = slice(fixed, None)
-    hold, pull = normal.hold[free, free], normal.pull[free]
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(hold), np.finfo(float).tiny))
-    scaled = scale[:, None] * hold * scale + damping * np.eye(len(scale))
-    step = np.zeros(UNKNOWNS)
-    step[free] = scale * np.linalg.solve(scaled, scale * pull)
-    gain = float(2.0 * step[free] @ pull - step[free] @ hold @ step[free])
-    return step, gain
+    hold, pull = normal.hold[:, free, free], normal.pull[:, free]
+    scale = np.maximum(np.diagonal(hold, 0, -2, -1), np.finfo(float).tiny) ** -0.5
+    scaled = scale[:, :, None] * hold * scale[:, None, :]
+    scaled += damping[:, None, None] * np.eye(scale.shape[-1])
+    step = np.zeros_like(normal.pull)
+    step[:, free] = scale * np.linalg.solve(scaled, (scale * pull)[..., None])[..., 0]
+    bent = (hold @ step[:, free, None])[..., 0]
+    return step, np.sum(step[:, free] * (2.0 * pull - bent), axis=-1)

@@ -48,12 +48,12 @@ class Direct(ABC):
         return Told(chi2, pull, np.broadcast_to(hold, (*chi2.shape, 3, 3)))
 
     def normal(self, course: Course) -> Normal:
-        """Return the normal equations at the motion."""
+        """Return the normal equations at the motions."""
         return summed(self.told(course.q, course.rate), self.derivative(course))
 
-    def chi2(self, q: Array, rate: Array) -> float:
-        """Return the chi-square of all epochs."""
-        return float(self.told(q, rate).chi2.sum())
+    def chi2(self, q: Array, rate: Array) -> Array:
+        """Return the chi-squares (...) of all epochs."""
+        return np.asarray(self.told(q, rate).chi2.sum(axis=-1))
 
     def within(self, epochs: BoolArray) -> Self:
         """Return the evidence of some epochs."""

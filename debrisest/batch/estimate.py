@@ -49,7 +49,8 @@ def estimate_from_points(
     """
     plain = tracks(times, points, 1.0)
     found = pairs(plain, model)
-    typical = noise_of(found) if sigma is None else _typical(points, sigma)
+    given = None if sigma is None else tracks(times, points, sigma)
+    typical = noise_of(found) if given is None else _typical(given)
     if sigma is None:
         typical = np.nanmax(
             [typical, _LEAST_NOISE * np.nanmax(np.abs(plain.centred()), initial=0.0)]
@@ -59,8 +60,7 @@ def estimate_from_points(
     scale = float(np.nanmax([typical, noise_of(found)]))
     kept = (largest_rigid_set if model is None else on_known_body)(found, scale)
     other = other_body(found, scale, kept)
-    tracked = tracks(times, points, typical if sigma is None else sigma)
-    tracked = tracked.without(~kept)
+    tracked = (given or tracks(times, points, typical)).without(~kept)
     tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
     unit = typical if sigma is None else 1.0
     whole, tracked = tracked, tracked.without(odd_points(tracked, found, scale))
@@ -139,10 +139,9 @@ def _model_in_doubt(solution: Solution, plain: Tracks) -> Solution:
     )
 
 
-def _typical(points: Array, sigma: Array | float) -> float:
+def _typical(given: Tracks) -> float:
     """Root mean square of the given sigma over what is seen, m."""
-    weight = tracks(np.zeros(len(points)), points, sigma).weight
-    used = weight[weight > 0.0]
+    used = given.weight[given.weight > 0.0]
     return float(np.sqrt(np.mean(1.0 / used))) if len(used) else 1.0
 
 

@@ -28,13 +28,14 @@ class Told(NamedTuple):
 
 
 class Normal(NamedTuple):
-    """The same of the unknowns of an arc, summed over epochs."""
+    """The same of the unknowns of arcs, summed over epochs."""
 
-    chi2: float
+    chi2: Array
+    """(...)."""
     pull: Array
-    """(11,)."""
+    """(..., 11)."""
     hold: Array
-    """(11, 11)."""
+    """(..., 11, 11)."""
 
 
 class Seen(NamedTuple):
@@ -69,10 +70,10 @@ class Evidence(Protocol):
         """Return what the epochs say at attitudes (..., 4) and rates (..., 3)."""
 
     def normal(self, course: Course) -> Normal:
-        """Return the normal equations at the motion (all epochs)."""
+        """Return the normal equations at the motions (all epochs)."""
 
-    def chi2(self, q: Array, rate: Array) -> float:
-        """Return the chi-square of all epochs, nuisances at their best."""
+    def chi2(self, q: Array, rate: Array) -> Array:
+        """Return the chi-squares (...) of all epochs of motions, nuisances at their best."""
 
     def within(self, epochs: BoolArray) -> Self:
         """Return the evidence of some epochs."""
@@ -94,12 +95,12 @@ class Evidence(Protocol):
 
 
 def summed(told: Told, derivative: Array) -> Normal:
-    """Return normal equations of epochs that are independent, with ``derivative (time, 3, p)``."""
-    back = np.swapaxes(derivative, -1, -2)
-    held = (told.hold @ derivative).reshape(-1, derivative.shape[-1])
-    hold = derivative.reshape(-1, derivative.shape[-1]).T @ held
-    pull = np.sum(back @ told.pull[..., None], axis=0)[:, 0]
-    return Normal(float(told.chi2.sum()), pull, hold)
+    """Return normal equations of independent epochs, with ``derivative (..., time, 3, p)``."""
+    shape = (*derivative.shape[:-3], -1, derivative.shape[-1])
+    back = np.swapaxes(derivative.reshape(shape), -1, -2)
+    hold = back @ (told.hold @ derivative).reshape(shape)
+    pull = (back @ told.pull.reshape(*shape[:-1], 1))[..., 0]
+    return Normal(told.chi2.sum(axis=-1), pull, hold)
 
 
 def vector_of(matrix: NDArray[Any]) -> Array:

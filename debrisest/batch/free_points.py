@@ -14,7 +14,7 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray
 from debrisest.attitude import quaternion
 from debrisest.batch.arc import UNKNOWNS, Course
-from debrisest.batch.evidence import Epochs, Normal, Seen, Told, summed
+from debrisest.batch.evidence import Epochs, Normal, Seen, Told
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.tracks import Tracks
 
@@ -65,10 +65,12 @@ class FreePoints:
         return self.known.told(q, rate, epochs)
 
     def normal(self, course: Course) -> Normal:
-        """Return the normal equations of the arc, the points at their best."""
+        """Return the normal equations of arcs, the points at their best, one after the other."""
+        if course.q.ndim > 2:
+            each = [self.normal(Course(*parts)) for parts in zip(*course)]
+            return Normal(*(np.stack(parts) for parts in zip(*each)))
         settled = self.settled(course.q)
-        told = settled.known.told(course.q, course.rate)
-        normal = summed(told, course.turn_by)
+        normal = settled.known.normal(course)
         cross = settled.cross(course)
         spent = np.tensordot(
             cross, np.tensordot(self.inverse_laplacian, cross, 1), ((0, 1), (0, 1))
@@ -91,8 +93,10 @@ class FreePoints:
         own = np.diag(self.inverse_laplacian)[:, None, None] * np.eye(3)
         return np.asarray(own + moved @ arc_covariance @ np.swapaxes(moved, -1, -2))
 
-    def chi2(self, q: Array, rate: Array) -> float:
-        """Return the chi-square of all epochs, the points at their best."""
+    def chi2(self, q: Array, rate: Array) -> Array:
+        """Return the chi-squares (...) of all epochs, the points at their best."""
+        if q.ndim > 2:
+            return np.stack([self.chi2(*parts) for parts in zip(q, rate)])
         return self.settled(q).known.chi2(q, rate)
 
     def within(self, epochs: BoolArray) -> Self:

@@ -147,7 +147,7 @@ def _weighted(
     sums = np.swapaxes(pairs, 1, 2) @ weight.reshape(windows, epochs, 9)
     hold = np.swapaxes(sums.reshape(windows, 4, 4, 3, 3), 2, 3).reshape(windows, 12, 12)
     pull = np.swapaxes(powers, 1, 2) @ (weight @ turn[..., None])[..., 0]
-    inverse = np.linalg.pinv(hold, 1e-12, hermitian=True)
+    inverse = np.asarray(np.linalg.pinv(hold, 1e-12, hermitian=True), dtype=np.float64)
     solution = (inverse @ pull.reshape(windows, 12, 1)).reshape(windows, 4, 3)
     residual = turn - powers @ solution
     weighted = (plain @ residual[..., None])[..., 0]

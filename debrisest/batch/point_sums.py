@@ -11,6 +11,7 @@ from typing import Self
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray
 from debrisest.attitude import quaternion
 from debrisest.batch.arc import Course
@@ -68,13 +69,24 @@ class KnownPoints:
         return Told(chi2, vector_of(turned), attitude @ hold @ back)
 
     def normal(self, course: Course) -> Normal:
-        """Return the normal equations at the motion."""
-        return summed(self.told(course.q, course.rate), course.turn_by)
+        """Return the normal equations at the motions."""
+        if not compiled.available():
+            return summed(self.told(course.q, course.rate), course.turn_by)
+        from debrisest.batch import point_loops
 
-    def chi2(self, q: Array, rate: Array) -> float:
-        """Return the chi-square of all epochs."""
+        product, hold, squares = self.sums
+        shape = course.q.shape[:-2]
+        by = np.ascontiguousarray(course.turn_by).reshape(-1, *course.turn_by.shape[-3:])
+        q = np.ascontiguousarray(course.q).reshape(*by.shape[:2], 4)
+        fit, pull, held = point_loops.normal(q, by, product, hold)
+        chi2 = squares.sum() - 2.0 * fit.reshape(shape)
+        return Normal(chi2, pull.reshape(*shape, -1), held.reshape(*shape, *held.shape[1:]))
+
+    def chi2(self, q: Array, rate: Array) -> Array:
+        """Return the chi-squares (...) of all epochs."""
         product, _, squares = self.sums
-        return float(squares.sum() - 2.0 * np.sum(product * quaternion.to_matrix(q)))
+        fit = np.sum(product * quaternion.to_matrix(q), axis=(-3, -2, -1))
+        return np.asarray(squares.sum() - 2.0 * fit)
 
     def within(self, epochs: BoolArray) -> Self:
         """Return the evidence of some epochs."""

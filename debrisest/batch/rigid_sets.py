@@ -37,7 +37,7 @@ class Pairs(NamedTuple):
 def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
     """Return how constant the distances are: about their median, or those of a known body."""
     seen, points = _by_feature(tracks)
-    partners = _partners(seen)
+    partners = np.triu(_partners(seen))
     features = len(seen)
     length, noise = np.full((2, features, features), np.nan)
     common = np.zeros((features, features))
@@ -53,7 +53,7 @@ def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
             middle = np.linalg.norm(model - model[i], axis=-1)[enough]
         length[i, enough] = middle
         noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * row_median(np.abs(shown - middle[:, None]))
-    return Pairs(length, noise, common)
+    return Pairs(*(np.where(np.tri(features, dtype=bool), p.T, p) for p in (length, noise, common)))
 
 
 def _by_feature(tracks: Tracks) -> tuple[BoolArray, Array]:
@@ -117,18 +117,24 @@ def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
     So wrong matches are told before any motion is known, also two that are swapped.
     """
     shown, points = _by_feature(tracks)
+    compared = np.triu(np.isfinite(found.length))
     odd = np.zeros(shown.shape, dtype=bool)
     for _ in range(2):
         seen = shown & ~odd
         asked, agreed = np.zeros((2, *seen.shape))
-        for i in range(len(seen)):
-            others = np.isfinite(found.length[i])
-            votes = seen[others][:, seen[i]]
-            asked[i, seen[i]] = votes.sum(axis=0)
-            apart = points[others][:, seen[i]] - points[i, seen[i]]
-            off = np.linalg.norm(apart, axis=-1) - found.length[i, others, None]
-            agreed[i, seen[i]] = np.sum(votes & (np.abs(off) < _ODD * np.sqrt(2.0) * sigma), axis=0)
-        odd |= seen & (agreed < 0.5 * asked)
+        for i, others in enumerate(compared):
+            votes = seen[others] & seen[i]
+            off = (
+                np.linalg.norm(points[others] - points[i], axis=-1) - found.length[i, others, None]
+            )
+            near = votes & (np.abs(off) < _ODD * np.sqrt(2.0) * sigma)
+            for total, part in ((asked, votes), (agreed, near)):
+                total[i] += part.sum(axis=0)
+                total[others] += part
+        newly = seen & (agreed < 0.5 * asked)
+        odd |= newly
+        if not newly.any():
+            break
     return np.asarray(odd.T)
 
 

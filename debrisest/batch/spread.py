@@ -13,7 +13,7 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
-from debrisest.batch.arc import Arc, displaced
+from debrisest.batch.arc import Arc, chosen, displaced
 
 FAR = 3.0
 """Sigmas at which the sides are looked for: what is claimed within three holds within three."""
@@ -44,7 +44,7 @@ class Sides(NamedTuple):
 
     def chosen(self, axes: list[int]) -> Self:
         """Return the sides of some axes."""
-        ahead, behind = (Arc(arcs.epoch, *(part[axes] for part in arcs[1:])) for arcs in self[:2])
+        ahead, behind = (chosen(arcs, axes) for arcs in self[:2])
         return type(self)(ahead, behind, self.far[:, axes])
 
     def moved(self, arc: Arc) -> tuple[Array, Array]:

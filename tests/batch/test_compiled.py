@@ -6,6 +6,8 @@ import pytest
 from debrisest import compiled
 from debrisest.batch import arc as arcs
 from debrisest.batch.arc import Arc, along, course
+from debrisest.batch.point_sums import KnownPoints
+from debrisest.batch.tracks import tracks
 
 pytest.importorskip("numba")
 
@@ -71,3 +73,13 @@ def test_without_numba_numpy_does_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(arcs.compiled, "available", lambda: False)
     monkeypatch.setattr(arcs, "_along_compiled", None)
     assert np.isfinite(along(drawn(2, 0.3), TIMES)[0]).all()
+
+
+def test_normal_equations_of_points_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    draws = np.random.default_rng(3)
+    points = draws.normal(size=(len(TIMES), 6, 3))
+    points[draws.random(points.shape[:2]) < 0.3] = np.nan
+    evidence = KnownPoints(tracks(TIMES, points, 0.1), draws.normal(size=(6, 3)))
+    motions = course(drawn(4, 0.3), TIMES)
+    for fast, slow in zip(*both(monkeypatch, evidence.normal, motions)):
+        np.testing.assert_allclose(fast, slow, atol=1e-12 * np.abs(slow).max())
