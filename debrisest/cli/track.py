@@ -74,7 +74,8 @@ def _read(paths: Sequence[Path], widest_px: int) -> "ImageSequence":
     from debrisest.vision.image_files import PAIR, read_images
 
     alone = len(paths) == 1 and not (paths[0] / PAIR[0]).is_dir()
-    found = [read_images(path, widest_px if alone else None) for path in paths]
+    widest = widest_px if alone else None
+    found = [read_images(path, widest, colours=True) for path in paths]
     if len(found) == 1:
         return found[0]
     if len(found) > len(PAIR) or any(len(one.cameras) > 1 for one in found):
@@ -86,7 +87,10 @@ def _read(paths: Sequence[Path], widest_px: int) -> "ImageSequence":
         ]
         raise UserError(f"{paths[1]}: images: {told[1]} pixels, but {paths[0]} has {told[0]}")
     frames = np.concatenate([first.frames, second.frames], axis=1)
-    return first._replace(cameras=PAIR, frames=frames)
+    chroma = None
+    if first.chroma is not None and second.chroma is not None:
+        chroma = np.concatenate([first.chroma, second.chroma], axis=1)
+    return first._replace(cameras=PAIR, frames=frames, chroma=chroma)
 
 
 def _times(images: "ImageSequence", rate_hz: float | None) -> "Array":

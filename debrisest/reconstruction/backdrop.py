@@ -26,7 +26,7 @@ _COLOURED, _SHADES = 12.0, (0.5, 1.15)
 _BESIDE, _LOSSY_GREY = 0.2, 3.0
 """Of photographs, in which compression leaves waves beside strong edges."""
 BORDER_PX = 4
-_STANDS_OUT = "what differs from a plain backdrop, which the edges of the images show"
+STANDS_OUT = "what differs from a plain backdrop, which the edges of the images show"
 _MOVES = "what differs from what each pixel shows most steadily"
 
 Smooth = NDArray[np.float32]
@@ -64,7 +64,7 @@ def readings(channels: Sequence[Smooth]) -> Iterator[Behind]:
         yield Behind(np.where(always_body, -1e3, steady), level, _MOVES)
         return
     own = apart(steady, backdrop) < 2.0 * _PLAIN_GREY
-    yield Behind(np.where(own, steady, backdrop), level, _STANDS_OUT, _BESIDE)
+    yield Behind(np.where(own, steady, backdrop), level, STANDS_OUT, _BESIDE)
     always_body &= (spread > _LOSSY_GREY) & ~own
     yield Behind(np.where(always_body, -1e3, steady), level, _MOVES, _BESIDE)
 

@@ -1,6 +1,7 @@
 """Silhouettes of a turning body: before black sky by brightness, else by what is behind it."""
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
@@ -64,6 +65,16 @@ def readings(frames: Frames, chroma: Frames | None = None) -> list[Reading]:
     if not told:
         raise ValueError("no body stands out from what is behind it, neither bright nor moving")
     return told
+
+
+def before_backdrop(frames: Frames, chroma: Frames | None) -> BoolArray | None:
+    """Return silhouettes of a body before a plain backdrop of some colour; None without one."""
+    if chroma is None:
+        return None
+    with suppress(ValueError):
+        first = readings(frames, chroma)[0]
+        return first.masks if first.said == backdrop.STANDS_OUT else None
+    return None
 
 
 def _of_camera(frames: Frames, chroma: Frames | None) -> Iterator[Reading]:

@@ -9,6 +9,7 @@ the half of each image's features that are smallest tell them, and what is off c
 Cauchy.
 """
 
+from collections import Counter
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,10 @@ _SHARE = 0.5
 """Of the features of an image, the smallest, that are kept."""
 _USUAL_PX = 0.2
 """How far small features are off; beyond this they count less."""
+_LEAST_SEEN = 0.1
+"""Of the points that a frame usually sees, below which it has no place."""
+_MOST_PX, _LEAST_DEG = 4.0, 1.5
+"""How far a point may be off where it is seen, least angle between lines of sight (COLMAP's)."""
 
 
 def placed_by_small_features(job: Job, model: Any) -> Any:
@@ -39,12 +44,25 @@ def placed_by_small_features(job: Job, model: Any) -> Any:
 
 def _with_all_points(job: Job, model: Any, placed: Any) -> Any:
     """Return the structure with poses of another one, and its points adjusted to them."""
-    for number, frame in placed.frames.items():
-        model.frames[number].rig_from_world = frame.rig_from_world
+    for number in placed.reg_frame_ids():
+        model.frames[number].rig_from_world = placed.frames[number].rig_from_world
     options = _options(job, robust=True)
     options.refine_rig_from_world = False
     job.colmap.bundle_adjustment(model, options)
+    manager = job.colmap.ObservationManager(model)
+    manager.filter_all_points3D(_MOST_PX, _LEAST_DEG)
+    for frame in _strays(model):
+        manager.deregister_frame(frame)
     return model
+
+
+def _strays(model: Any) -> list[int]:
+    """Return frames that see next to nothing of what others see: chance has placed them."""
+    seen: Counter[int] = Counter()
+    for image in model.images.values():
+        seen[image.frame_id] += image.num_points3D
+    least = _LEAST_SEEN * float(np.median(list(seen.values())))
+    return [frame for frame, count in seen.items() if count < least]
 
 
 def _options(job: Job, robust: bool = False) -> Any:

@@ -17,7 +17,7 @@ def result_of(model: Any, lens: Lens, rig: Rig, frames: int) -> dict[str, Any]:
     rotation, translation = np.full((frames, 3, 3), np.nan), np.full((frames, 3), np.nan)
     points = {key: number for number, key in enumerate(model.points3D)}
     seen = np.zeros((frames, len(points)), dtype=np.bool_)
-    for image in model.images.values():
+    for image in filter(lambda image: image.has_pose, model.images.values()):
         camera, frame = image.name.removeprefix(CAMERAS).removesuffix(".png").split("/")
         pose = image.cam_from_world().matrix()
         back = rig.rotation[int(camera)].T

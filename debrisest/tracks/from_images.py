@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, BoolArray
 from debrisest.counted import counted
 from debrisest.errors import UserError
+from debrisest.reconstruction.silhouettes import before_backdrop
 from debrisest.tracks.types import Camera, Rig, Tracks
 from debrisest.tracks.write_calibration import camera_matrix
 from debrisest.vision.camera import PinholeImage
@@ -61,7 +62,7 @@ def stereo_tracks(images: ImageSequence, rig: Rig, times: Array) -> Tracked:
     Raises `UserError` where too little is found to be followed.
     """
     turned = rectified(*cameras_of(rig, images))
-    tracker = StereoTracker(turned, seed=0)
+    tracker = StereoTracker(turned, seed=0, body=_body(images))
     for number in counted(range(len(times)), "images"):
         tracker.take(images.frames, number)
     found = refined(tracker)
@@ -89,7 +90,7 @@ def pixel_tracks(images: ImageSequence, times: Array) -> Tracked:
     Points that were lost are not known again: that takes a map of the body. Raises `UserError`
     where too little is found.
     """
-    tracker = PixelTracker()
+    tracker = PixelTracker(_body(images))
     for epoch in counted(range(len(times)), "images"):
         tracker.take(images.frames[:, 0], epoch)
     length = np.bincount(np.concatenate([found.numbers for found in tracker.found]))
@@ -107,6 +108,15 @@ def pixel_tracks(images: ImageSequence, times: Array) -> Tracked:
         cameras=images.cameras, pixels=(pixels + 0.5) / images.reduced - 0.5,
     )  # fmt: skip
     return Tracked(tracks, pixels, left_out, 0, np.nan)
+
+
+def _body(images: ImageSequence) -> BoolArray | None:
+    """Return where the first camera shows the body (time, row, column) before a coloured backdrop.
+
+    None where there is no such backdrop: what moves is the body then.
+    """
+    masks = before_backdrop(images.frames, images.chroma)
+    return None if masks is None else masks[:, 0]
 
 
 def _names(count: int) -> tuple[str, ...]:

@@ -34,7 +34,9 @@ _FEWEST = 12
 class PixelTracker:
     """Takes the frames of a camera one by one, and keeps what has been found."""
 
-    def __init__(self) -> None:
+    def __init__(self, body: BoolArray | None = None) -> None:
+        """``body (time, row, column)`` is where new points may be, if that is known."""
+        self._body = body
         self.counts, self.points = Counter[str](), 0
         self.found: list[Followed] = []
         self._before: Image | None = None
@@ -43,7 +45,7 @@ class PixelTracker:
         """Take an epoch of ``frames (time, row, column)``."""
         image = evened(frames[epoch])
         now = nothing() if self._before is None else self._follow(self._before, image)
-        free = moving(frames, epoch) & away_from(image.shape, now.pixels)
+        free = moving(frames, epoch, self._body) & away_from(image.shape, now.pixels)
         new = corners(image, free, APART, MOST - len(now.numbers))
         numbers = np.arange(self.points, self.points + len(new))
         self.points += len(new)

@@ -40,7 +40,9 @@ _AGREE = 6
 class StereoTracker:
     """Takes the frames of a pair one by one, and keeps what has been found."""
 
-    def __init__(self, rectified: Rectified, seed: int) -> None:
+    def __init__(self, rectified: Rectified, seed: int, body: BoolArray | None = None) -> None:
+        """``body (time, row, column)`` is where the left image may have new points, if known."""
+        self._body = body
         self.pair, self._rectified = rectified.pair, rectified
         self.map, self.counts, self.known_again = BodyMap(), Counter[str](), 0
         self.poses: list[RigidPose] = []
@@ -54,7 +56,7 @@ class StereoTracker:
         Pixels are rectified.
         """
         images = [evened(image) for image in self._rectified.images(frames[epoch])]
-        changes = nearest(moving(frames[:, 0], epoch), self._rectified.maps[0])
+        changes = nearest(moving(frames[:, 0], epoch, self._body), self._rectified.maps[0])
         now = self._follow(images) if self.images else nothing(2)
         now = self._renew(images, now, changes)
         self.images.append(images)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from typer.testing import CliRunner
 
 from debrisest.arrays import Array
@@ -94,6 +95,26 @@ def test_pixels_are_those_of_the_images_before_they_were_reduced(rendered: Path)
     )
     assert whole is not None and half is not None
     np.testing.assert_allclose(half + 0.5, 2.0 * (whole + 0.5))
+
+
+def test_a_shadow_that_moves_on_a_coloured_backdrop_is_not_followed(rendered: Path) -> None:
+    """The backdrop is as bright as the body, and blue; in a corner spots of shade move on it."""
+    images = read_images(rendered / "left")
+    frames, body = images.frames.copy(), images.frames > 12
+    frames[~body] = 90
+    spots = np.kron(np.random.default_rng(5).integers(60, 90, (6, 8)), np.ones((5, 5)))
+    for epoch, frame in enumerate(frames[:, 0]):
+        frame[2:32, 2 + 3 * epoch : 42 + 3 * epoch] = spots
+    assert not body[:, 0, :35, :66].any()
+    shade = np.where(body, 0.0, frames / 90.0)[..., None]
+    chroma = np.rint(128 + shade * [-18, 37]).astype(np.uint8)
+
+    def in_the_corner(chroma: NDArray[np.uint8] | None) -> int:
+        shown = pixel_tracks(images._replace(frames=frames, chroma=chroma), np.arange(8.0)).shown
+        return int((np.nanmax(shown, axis=(0, 1)) < [66, 35]).all(axis=1).sum())
+
+    assert in_the_corner(None) > 0
+    assert in_the_corner(chroma) == 0
 
 
 def test_a_room_that_stands_still_is_left_out(config: Path, tmp_path: Path) -> None:
