@@ -1,6 +1,7 @@
 """Errors that are told to a person, without a trace."""
 
 import difflib
+import errno
 import re
 from collections.abc import Iterable
 
@@ -16,6 +17,20 @@ NO_MEMORY = (
     "there is not enough memory for it: a number may be far too large; if none is, fewer --jobs "
     "leave more for each"
 )
+
+_NEXT = {
+    errno.EAGAIN: "no more processes or threads are started (ulimit -u); fewer --jobs need less",
+    errno.EMFILE: "fewer --jobs need less, or ulimit -n gives more",
+    errno.ENOMEM: "fewer --jobs leave more for each",
+}
+
+
+def refused(error: OSError) -> str:
+    """Return what the system refuses as a sentence, with what to do where that is known."""
+    reason = error.strerror or str(error) or type(error).__name__
+    place = error.filename2 or error.filename
+    hint = _NEXT.get(error.errno or 0, "")
+    return ": ".join(filter(None, (str(place or ""), reason, hint)))
 
 
 def printable(text: str) -> str:

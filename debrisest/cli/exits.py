@@ -10,7 +10,7 @@ from typer import BadParameter
 from typer.core import TyperGroup
 
 from debrisest.cli.streams import steady
-from debrisest.errors import NO_MEMORY, UserError, meant
+from debrisest.errors import NO_MEMORY, UserError, meant, refused
 from debrisest.interrupts import SENTENCE
 
 _PLACE = re.compile(r"^([^\n]*?):(\d+):\d+(?=: )")
@@ -30,7 +30,7 @@ class Commands(TyperGroup):
                 finally:
                     sys.stdout.flush()
             except OSError as error:
-                _stop(2, _sentence(error))
+                _stop(2, refused(error))
 
     def invoke(self, ctx: Any) -> Any:
         """Run a command."""
@@ -44,7 +44,7 @@ class Commands(TyperGroup):
         except OSError as error:
             if error.errno == errno.EPIPE:
                 raise
-            _stop(2, _sentence(error))
+            _stop(2, refused(error))
         except MemoryError:
             _stop(2, NO_MEMORY)
         except ImportError as error:
@@ -81,12 +81,6 @@ def _meant(error: BadParameter) -> str:
         return ""
     given, *words = re.findall("'(.*?)'", error.message)
     return meant(given, words)
-
-
-def _sentence(error: OSError) -> str:
-    reason = error.strerror or str(error) or type(error).__name__
-    place = error.filename2 or error.filename
-    return f"{place}: {reason}" if place else reason
 
 
 def _stop(code: int, *sentences: str) -> None:

@@ -7,6 +7,7 @@ same path everywhere. They compute only after they proved to have the same code 
 import logging
 import threading
 import time
+import warnings
 from asyncio import CancelledError as AsyncCancelledError
 from collections.abc import Callable, Iterator
 from concurrent.futures import (
@@ -52,7 +53,8 @@ def dask_executor(address: str) -> Iterator[tuple[Executor, int]]:
         if name.partition(".")[0] in _LOGGERS:
             logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        client = Client(scheduler, timeout=10, set_as_default=False)
+        with warnings.catch_warnings(action="ignore"):  # of other versions, which we tell ourselves
+            client = Client(scheduler, timeout=10, set_as_default=False)
     except (OSError, ValueError, TimeoutError):
         raise UserError(f"--executor {address}: no dask scheduler answers there") from None
     try:

@@ -6,13 +6,13 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from typing import NamedTuple
 
-from debrisest.errors import NO_MEMORY, UserError
+from debrisest.errors import NO_MEMORY, UserError, refused
 from debrisest.runner.compute import compute
 from debrisest.runner.plan import Step
 from debrisest.runner.schedule import Schedule
 
-_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Where no other step could write its file either."""
+_ENDING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EAGAIN)
+"""Where no other step could write its file either, or be computed."""
 
 
 class Outcome(NamedTuple):
@@ -65,7 +65,7 @@ def execute(
 
 
 def _ends_all(error: BaseException | None) -> bool:
-    return isinstance(error, BrokenExecutor) or getattr(error, "errno", None) in _NO_ROOM
+    return isinstance(error, BrokenExecutor) or getattr(error, "errno", None) in _ENDING
 
 
 def _submit(pool: Executor, batch: list[Step]) -> Future[None]:
@@ -81,10 +81,9 @@ def _submit(pool: Executor, batch: list[Step]) -> Future[None]:
 def _sentence(error: BaseException) -> str:
     """Return why nothing was written; a pool of processes only tells that one ended."""
     if isinstance(error, BrokenProcessPool):
-        return "a worker process was ended; run again to go on"
+        return "a worker process was ended; run again to go on, with fewer --jobs if it recurs"
     if isinstance(error, OSError):
-        place = f"{error.filename}: " if error.filename else ""
-        return f"{place}{error.strerror or error}; the same command goes on from here"
+        return f"{refused(error)}; the same command goes on from here"
     if isinstance(error, MemoryError):
         return ": ".join([*getattr(error, "__notes__", []), NO_MEMORY])
     if isinstance(error, ImportError):

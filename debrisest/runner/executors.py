@@ -1,11 +1,12 @@
 """Where steps are computed: in this process, in a pool of processes, or on a cluster."""
 
+import errno
 import multiprocessing
 import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, InvalidStateError, ProcessPoolExecutor
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from typing import Any
@@ -39,17 +40,38 @@ class WorkerPool(ProcessPoolExecutor):
         heard, self._told = spawn.Pipe(duplex=False)
         given = self._told, spawn.Lock()
         super().__init__(jobs, mp_context=spawn, initializer=_follow_parent, initargs=given)
-        threading.Thread(target=_pass_on, args=(heard, listener()), daemon=True).start()
+        self._asked: list[Future[Any]] = []
+        self._lost = False
+        with _threads_told():
+            threading.Thread(target=_pass_on, args=(heard, listener()), daemon=True).start()
+        self._hook, threading.excepthook = threading.excepthook, self._thread_lost
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Submit as the pool does, starting workers with Ctrl-C blocked."""
-        with _blocked_ctrl_c():
-            return super().submit(fn, *args, **kwargs)
+        with _blocked_ctrl_c(), _threads_told():
+            future = super().submit(fn, *args, **kwargs)
+        self._asked = [*(one for one in self._asked if not one.done()), future]
+        if self._lost:
+            self._give_up()
+        return future
+
+    def _thread_lost(self, lost: threading.ExceptHookArgs) -> None:
+        """Give up where a thread of the pool ends by an error, after which nobody is answered."""
+        if not _lacks_a_thread(lost.exc_value):
+            self._hook(lost)
+        self._lost = True
+        self._give_up()
+
+    def _give_up(self) -> None:
+        for future in self._asked:
+            with suppress(InvalidStateError):
+                future.set_exception(_no_thread())
 
     def __exit__(self, *error: Any) -> None:
-        """Wait for the workers, or end them where an error leaves the pool."""
+        """Wait for the workers, or end them where an error leaves the pool, or one was in it."""
+        threading.excepthook = self._hook
         self._told.close()
-        if error[0] is None:
+        if error[0] is None and not self._lost:
             self.shutdown()
             return
         self.shutdown(wait=False, cancel_futures=True)
@@ -115,4 +137,24 @@ def _follow_parent(told: Connection, lock: Any) -> None:
         parent.join()
         os._exit(1)
 
-    threading.Thread(target=wait, daemon=True).start()
+    try:
+        threading.Thread(target=wait, daemon=True).start()
+    except RuntimeError:
+        os._exit(1)
+
+
+@contextmanager
+def _threads_told() -> Iterator[None]:
+    """Raise OSError, as for a process, where the system starts no more threads."""
+    try:
+        yield
+    except RuntimeError as error:
+        raise (_no_thread() if _lacks_a_thread(error) else error) from None
+
+
+def _lacks_a_thread(error: BaseException | None) -> bool:
+    return isinstance(error, RuntimeError) and "new thread" in str(error)
+
+
+def _no_thread() -> OSError:
+    return OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))

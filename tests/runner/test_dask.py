@@ -174,3 +174,17 @@ def test_a_worker_of_another_version(cluster: Cluster, small: Path, tmp_path: Pa
     assert code == 2
     assert "worker tcp://127.0.0.1" in told and "install the same" in told
     assert not list((tmp_path / "out").rglob("*.h5"))
+
+
+def test_a_worker_with_another_numpy_computes_nothing(
+    cluster: Cluster, small: Path, tmp_path: Path
+) -> None:
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "sitecustomize.py").write_text("import numpy\nnumpy.__version__ = '1.99.0'\n")
+    cluster.add_worker(package=other)
+    with command(small, tmp_path / "out", *cluster.option) as running:
+        code, told = end_of(running)
+    assert (code, len(told.splitlines())) == (2, 1), told
+    assert "numpy 1.99.0 (expected" in told
+    assert not list((tmp_path / "out").rglob("*.h5"))

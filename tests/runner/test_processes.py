@@ -1,9 +1,11 @@
 """Signals end a command with a sentence, and no worker outlives the process that started it."""
 
+import multiprocessing
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -104,3 +106,42 @@ def test_a_script_without_a_main_guard_is_told_so(small: Path, tmp_path: Path) -
     assert ended.returncode == 1
     assert '__name__ == "__main__"' in ended.stderr
     assert "multiprocessing" not in ended.stderr
+
+
+@pytest.mark.parametrize("started", [0, 1, 2])
+def test_where_no_more_threads_are_started_a_sentence_ends_the_command(
+    started: int, small: Path, tmp_path: Path, cli: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The pool has three: one hears its workers, one hands out work, one sends it."""
+    original, before = threading.Thread.start, threading.excepthook
+    seen: list[threading.Thread] = []
+
+    def start(thread: threading.Thread) -> None:
+        if len(seen) == started:
+            raise RuntimeError("can't start new thread")
+        seen.append(thread)
+        original(thread)
+
+    one = (small, "--out", tmp_path / "out", "--case", "slow", "--estimator", "triad", "--quiet")
+    with monkeypatch.context() as patch:
+        patch.setattr(threading.Thread, "start", start)
+        done = cli("sweep", *one, "--jobs", 2)
+    assert done.exit_code in (1, 2)
+    assert "no more processes or threads are started" in done.stderr
+    assert "Traceback" not in done.stderr
+    wait_until(lambda: not multiprocessing.active_children())
+    assert threading.excepthook == before
+    assert cli("sweep", *one, "--jobs", 1).exit_code == 0
+
+
+def test_a_worker_that_cannot_watch_its_parent_ends_without_a_trace() -> None:
+    code = (
+        "import multiprocessing, threading\n"
+        "from debrisest.runner import executors\n"
+        "def none(self): raise RuntimeError('can\\'t start new thread')\n"
+        "threading.Thread.start = none\n"
+        "multiprocessing.parent_process = lambda: 1\n"
+        "executors._follow_parent(None, None)"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr) == (1, "")
