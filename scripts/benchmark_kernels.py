@@ -9,6 +9,7 @@ holds whole filters against their peers.
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 from unittest.mock import patch
@@ -19,8 +20,14 @@ from rich.console import Console
 from rich.table import Table
 
 from debrisest import compiled
+from debrisest.arrays import Array
 from debrisest.batch.arc import Arc, course
 from debrisest.dynamics.log_inertia import log_ratios
+from debrisest.filters.association.evidence import Beside
+from debrisest.filters.association.restless import Bank
+from debrisest.filters.association.sensor import updated
+from debrisest.filters.association.update import Scan, Tracks
+from debrisest.filters.association.weights import Validation, probabilistic
 from debrisest.problems.camera_range import model as camera_range
 
 RATE, MOMENTS = np.radians([7.2, 5.525, -1.624]), np.array([0.618, 0.707, 0.345])
@@ -47,7 +54,33 @@ def kernels() -> dict[str, Kernel]:
             orbit, core, 1165, 1
         ),
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
+        **{
+            f"association, one sensor of seven detections, {runs} runs": association(runs)
+            for runs in (100, 1)
+        },
     }
+
+
+def association(runs: int) -> Kernel:
+    """Return the update of a target's track, and of what runs beside it, by one sensor."""
+    draws = np.random.default_rng(runs)
+
+    def positive(*axes: int) -> Array:
+        root = draws.normal(size=(*axes, 6, 8))
+        return root @ np.swapaxes(root, -2, -1)
+
+    tracks = Tracks(draws.normal(size=(runs, 1, 6)), positive(runs, 1))
+    bank = Bank(draws.normal(size=(runs, 2, 6)), positive(runs, 2))
+    beside = Beside(draws.normal(size=(runs, 6, 7)), bank)
+    seen = draws.normal(size=(runs, 1, 1, 7, 2)), draws.normal(size=(runs, 1, 1, 2, 6))
+    doubted = draws.normal(size=(runs, 1, 2, 7))
+    weigh = partial(probabilistic, validation=Validation(), d=2)
+
+    def kernel() -> tuple[Array, ...]:
+        new, apart, shown, _ = updated(tracks, beside, Scan(*seen), doubted, np.eye(2), 9.21, weigh)
+        return (*new, apart.pull, *apart.bank, shown.score, shown.likelihood)
+
+    return kernel
 
 
 def compared(kernel: Kernel, rounds: int) -> tuple[list[float], list[float], float]:
