@@ -9,6 +9,7 @@ holds whole filters against their peers.
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 from unittest.mock import patch
@@ -19,9 +20,15 @@ from rich.console import Console
 from rich.table import Table
 
 from debrisest import compiled
+from debrisest.arrays import Array
 from debrisest.batch.arc import Arc, course
 from debrisest.clock import Clock
 from debrisest.dynamics.log_inertia import log_ratios
+from debrisest.filters.association.evidence import Beside
+from debrisest.filters.association.restless import Bank
+from debrisest.filters.association.sensor import updated
+from debrisest.filters.association.update import Scan, Tracks
+from debrisest.filters.association.weights import Validation, probabilistic
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
@@ -55,6 +62,10 @@ def kernels() -> dict[str, Kernel]:
         ),
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
+        **{
+            f"association, one sensor of seven detections, {runs} runs": association(runs)
+            for runs in (100, 1)
+        },
     }
 
 
@@ -91,6 +102,28 @@ def of_replay() -> dict[str, Kernel]:
         "replay, 100 runs of 101 epochs": lambda: replay(model(), *data).state,
         "the same, one run": lambda: replay(model(), *(each[:1] for each in data)).state,
     }
+
+
+def association(runs: int) -> Kernel:
+    """Return the update of a target's track, and of what runs beside it, by one sensor."""
+    draws = np.random.default_rng(runs)
+
+    def positive(*axes: int) -> Array:
+        root = draws.normal(size=(*axes, 6, 8))
+        return root @ np.swapaxes(root, -2, -1)
+
+    tracks = Tracks(draws.normal(size=(runs, 1, 6)), positive(runs, 1))
+    bank = Bank(draws.normal(size=(runs, 2, 6)), positive(runs, 2))
+    beside = Beside(draws.normal(size=(runs, 6, 7)), bank)
+    seen = draws.normal(size=(runs, 1, 1, 7, 2)), draws.normal(size=(runs, 1, 1, 2, 6))
+    doubted = draws.normal(size=(runs, 1, 2, 7))
+    weigh = partial(probabilistic, validation=Validation(), d=2)
+
+    def kernel() -> tuple[Array, ...]:
+        new, apart, shown, _ = updated(tracks, beside, Scan(*seen), doubted, np.eye(2), 9.21, weigh)
+        return (*new, apart.pull, *apart.bank, shown.score, shown.likelihood)
+
+    return kernel
 
 
 def compared(kernel: Kernel, rounds: int) -> tuple[list[float], list[float], float]:
