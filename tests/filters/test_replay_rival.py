@@ -15,7 +15,12 @@ SHOWN = 0.3
 """Of the number whose sign the first row hides, in the second."""
 
 
-def square(shown=SHOWN, mirror=lambda state: -state):
+def square(
+    shown=SHOWN,
+    mirror=lambda state: -state,
+    start=lambda prior, shown, epoch: prior,
+    shape=lambda x: (x**2, 2.0 * x),
+):
     """A constant whose square is measured well, and itself badly."""
 
     def trajectory(state, first, last):
@@ -23,9 +28,9 @@ def square(shown=SHOWN, mirror=lambda state: -state):
         return np.repeat(state[:, None], epochs, 1), np.ones((len(state), epochs, 1, 1))
 
     def rows(states, sensitivity, first, epochs):
-        both = np.concatenate([states**2, shown * states], -1)
-        slope = np.stack([2.0 * states[..., 0], np.full(states.shape[:2], shown)], -1)
-        return both, slope[..., None]
+        value, slope = shape(states)
+        both = np.concatenate([value, shown * states], -1)
+        return both, np.stack([slope, np.full_like(slope, shown)], -2)
 
     def identity(state):
         return np.broadcast_to(np.eye(1), (len(state), 1, 1))
@@ -40,7 +45,7 @@ def square(shown=SHOWN, mirror=lambda state: -state):
         retract=lambda state, error: state + error,
         difference=lambda state, reference: state - reference,
         plain_difference=lambda state, reference: state - reference,
-        start=lambda prior, shown, epoch: prior,
+        start=start,
         sigma=SIGMA,
         error_names=("a",),
         mirror=mirror,
@@ -104,6 +109,25 @@ def test_what_one_frame_tells_has_no_rival_left() -> None:
     found = replay(square(40.0), *known)
     assert not (found.counts["rival_excess"] < GIVEN_UP).any()
     np.testing.assert_allclose(found.state[:, -1], truth, atol=0.01)
+
+
+def test_the_prior_competes_where_the_first_guess_leads_elsewhere() -> None:
+    """Of ``(a^2 - 4)^2`` the first guess lies in the valley beyond 2, whose mirror is no better."""
+    rng = np.random.default_rng(3)
+    truth, shown = rng.uniform(1.0, 1.6, (RUNS, 1)), 0.6
+    model = square(
+        shown,
+        start=lambda prior, shown, epoch: np.sqrt(8.0 - prior**2),
+        shape=lambda x: ((x**2 - 4.0) ** 2, 4.0 * x * (x**2 - 4.0)),
+    )
+    exact = np.concatenate([(truth**2 - 4.0) ** 2, shown * truth], -1)[:, None]
+    measured = exact + SIGMA * rng.normal(size=(RUNS, EPOCHS, 2))
+    prior = truth + 0.1 * rng.normal(size=(RUNS, 1))
+    covariance = np.full((RUNS, 1, 1), 0.2**2)
+    found = replay(model, prior, covariance, measured)
+    np.testing.assert_allclose(found.state[:, -1], truth, atol=0.01)
+    alone = replay(model._replace(mirror=None), prior, covariance, measured)
+    assert (alone.state[:, -1] > 2.0).all()
 
 
 def test_a_run_does_not_depend_on_those_beside_it() -> None:

@@ -53,11 +53,29 @@ def compete(
 
     Where it has come to the same minimum it begins at the mirror of the best solution again, since
     two may part later; with `anew` where it has lost, too, since the best one may have moved to a
-    third. The weights of `arc` are those of the best solution.
+    third. In the first frame the prior competes too: a first guess may lead to neither of both. The
+    weights of `arc` are those of the best solution.
     """
+    if search.frames == 1:
+        _begin(search.last, model, arc, best, rival, np.flatnonzero(rival.open))
+        rival.state[:] = arc.prior
+        _refine(search, model, arc, best, rival, np.flatnonzero(rival.open))
+        rival.gap[:] = np.nan
     none = np.isnan(rival.gap) | (anew & ~(rival.gap < GIVEN_UP))
     _begin(search.last, model, arc, best, rival, np.flatnonzero(rival.open & none))
     runs = np.flatnonzero(rival.open & (none | (rival.gap < GIVEN_UP)))
+    _refine(search, model, arc, best, rival, runs)
+
+
+def _refine(
+    search: Search,
+    model: ReplayModel,
+    arc: MeasuredArc,
+    best: Solution,
+    rival: Rival,
+    runs: IntArray,
+) -> None:
+    """Refine the rivals of some runs, and change places where they cost less, all in place."""
     if len(runs) == 0:
         return
     part, beside = model.of(runs), take(arc, runs)
