@@ -49,11 +49,9 @@ def with_bends(
             arc = measured_arc(part, prior[some], covariance[some], measured[some, : end + 1])
             start = part.rewind(found.state[some, end], end)
             with np.errstate(all="ignore"):
-                ways = _ways(part, arc, start, kept.tolist(), gate)
-            for slot, way in zip(together, ways):
-                _widen(
-                    sigma, spread, some, found.kept, slot, _added(part, spread[some, slot], *way)
-                )
+                for slot, way in zip(together, _ways(part, arc, start, kept.tolist(), gate)):
+                    more = _added(part, spread[some, slot], *way)
+                    _widen(sigma, spread, some, found.kept, slot, more)
     return found._replace(sigma=sigma, covariance=spread)
 
 
