@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from debrisest.filters.replay.replay import replay
-from debrisest.filters.replay.self_tests import self_tests
+from debrisest.filters.replay.self_tests import _scores, self_tests
 from debrisest.filters.replay_model import Doubt, ReplayModel
 from debrisest.filters.self_test import judged, told
 
@@ -82,3 +82,20 @@ def test_errors_that_last_are_told_by_blocks():
     _, tests = fit_of(error=slow)
     assert tests[0].failed.sum() == 0
     assert tests[1].value[2:].mean() > 1.5
+
+
+def test_a_number_that_is_hardly_apart_from_the_errors_is_not_rounding() -> None:
+    """Against orthogonal columns; of sums of squares the difference would be off by an eighth."""
+    draws = np.random.default_rng(5)
+    rows, own = draws.normal(size=(400, 12)), 1e-3 * draws.normal(size=400)
+    rows[:, 1] = rows[:, 0] + 1e-5 * rows[:, 1]
+    mixed, left = draws.normal(size=12), draws.normal(size=400)
+    mixed[:2] = 1e5, -1e5
+    basis = np.linalg.qr(np.concatenate([rows, 1e-6 * np.eye(12)]))[0]
+    apart = np.concatenate([own, -1e-6 * mixed])
+    for _ in range(2):
+        apart = apart - basis @ (basis.T @ apart)
+    given = rows, left[:, None], 1e-12 * np.eye(12), np.zeros(12), (rows @ mixed + own)[:, None]
+    value, sigma = _scores(*(each[None] for each in given))
+    np.testing.assert_allclose(sigma[0, 0], np.linalg.norm(apart) ** -1.0, rtol=1e-6)
+    np.testing.assert_allclose(value[0, 0], apart[:400] @ left / (apart @ apart), rtol=1e-6)

@@ -88,16 +88,21 @@ def _fit(model: ReplayModel, arc: MeasuredArc, start: Array, gate: bool) -> _Fit
 def _scores(
     rows: Array, left: Array, prior: Array, pull: Array, doubted: Array | None
 ) -> tuple[Array, Array]:
-    """Doubted numbers and their sigmas (run, doubt), each alone beside all errors (Rao's test)."""
+    """Doubted numbers and their sigmas (run, doubt), each alone beside all errors (Rao's test).
+
+    What the errors cannot make of a number is its column less its projection, found twice: the
+    difference of two sums would be rounding where that is little.
+    """
     if doubted is None:
         return np.empty((len(rows), 0)), np.empty((len(rows), 0))
-    transposed, columns = np.swapaxes(rows, -1, -2), np.swapaxes(doubted, -1, -2)
-    both = transposed @ doubted
-    shared = scaled_inverse(prior + transposed @ rows) @ both
-    gradient = pull[..., None] + transposed @ left
-    score = (columns @ left - np.swapaxes(shared, -1, -2) @ gradient)[..., 0]
-    alone = (doubted**2).sum(1)
-    own = alone - (both * shared).sum(1)
+    transposed = np.swapaxes(rows, -1, -2)
+    spread = scaled_inverse(prior + transposed @ rows)
+    shared = spread @ (transposed @ doubted)
+    apart = doubted - rows @ shared
+    again = spread @ (transposed @ apart - prior @ shared)
+    shared, apart = shared + again, apart - rows @ again
+    score = (apart * left).sum(1) - (shared * pull[..., None]).sum(1)
+    alone, own = (doubted**2).sum(1), (apart**2).sum(1) + (shared * (prior @ shared)).sum(1)
     own = np.where(own > _SHOWN * alone, own, np.nan)
     return score / own, own**-0.5
 

@@ -18,7 +18,7 @@ from debrisest.filters.replay.floor import errors_per_sigma
 from debrisest.filters.replay.measured_arc import MeasuredArc, linearize, measured_arc, residuals
 from debrisest.filters.replay_model import ReplayModel
 
-_TOGETHER = 100  # runs at a time, for the sake of memory
+_TOGETHER = 12_000  # epochs of all runs at a time, for the sake of memory
 
 
 def with_bends(
@@ -44,16 +44,15 @@ def with_bends(
         kept = found.kept[together]
         end = last if smoothed else int(kept[0])
         runs = np.flatnonzero(finite(found.state[:, end], spread[:, together[-1]]))
-        for some in np.split(runs, range(_TOGETHER, len(runs), _TOGETHER)):
+        size = max(1, _TOGETHER // (end + 1))
+        for some in np.split(runs, range(size, len(runs), size)):
             part = model.of(some)
             arc = measured_arc(part, prior[some], covariance[some], measured[some, : end + 1])
             start = part.rewind(found.state[some, end], end)
             with np.errstate(all="ignore"):
-                ways = _ways(part, arc, start, kept.tolist(), gate)
-            for slot, way in zip(together, ways):
-                _widen(
-                    sigma, spread, some, found.kept, slot, _added(part, spread[some, slot], *way)
-                )
+                for slot, way in zip(together, _ways(part, arc, start, kept.tolist(), gate)):
+                    more = _added(part, spread[some, slot], *way)
+                    _widen(sigma, spread, some, found.kept, slot, more)
     return found._replace(sigma=sigma, covariance=spread)
 
 
