@@ -64,18 +64,14 @@ def _one(times: Array, q0: Array, rate0: Array, matrix: Array, q_if: Array, rate
         unit[0 if k == 0 else 1 + body[-1][k - 1]] = 1.0
         by[:, k] = _product(_product(left, unit), _conjugate(q_fb))
     at(times, body, rate, about)
-    for t in range(len(times)):
-        for i in range(4):
-            q_if[t, i] = (
-                by[i, 0] * about[0, t]
-                + by[i, 1] * about[1, t]
-                + by[i, 2] * about[2, t]
-                + by[i, 3] * about[3, t]
-            )
-        for i in range(3):
-            rates[t, i] = (
-                axes[i, 0] * rate[0, t] + axes[i, 1] * rate[1, t] + axes[i, 2] * rate[2, t]
-            )
+    for i in range(4):
+        a, b, c, d = by[i]
+        for t in range(len(times)):
+            q_if[t, i] = a * about[0, t] + b * about[1, t] + c * about[2, t] + d * about[3, t]
+    for i in range(3):
+        a, b, c = axes[i]
+        for t in range(len(times)):
+            rates[t, i] = a * rate[0, t] + b * rate[1, t] + c * rate[2, t]
 
 
 @compiled

@@ -148,8 +148,8 @@ def covariance(hold: Array, fixed: int = 0) -> Array:
 def costs(evidence: Evidence, arcs: Sequence[Arc]) -> Array:
     """Return chi-squares (arc,) with the wide prior, infinite where no body is looked for."""
     result = np.full(len(arcs), np.inf)
-    sought = np.flatnonzero([_sought(arc) for arc in arcs])
-    if len(sought):
+    sought = [k for k, arc in enumerate(arcs) if _sought(arc)]
+    if sought:
         part = stacked([arcs[k] for k in sought])
         with np.errstate(over="ignore", invalid="ignore"):
             chi2 = evidence.chi2(*along(part, evidence.times))

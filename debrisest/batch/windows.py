@@ -105,9 +105,9 @@ def _fitted(
     found = descend(kept, arc, 12, held)
     for _ in range(_ROUNDS):
         q, rate = along(found.arc, window.times)
-        usual = float(np.nanmedian(window.squares(q, rate))) / _MEDIAN
-        limit = _GATE * max(1.0, usual / _UNUSUAL)
-        gated = window.gated(q, rate, limit)
+        squares = window.squares(q, rate)
+        limit = _GATE * max(1.0, float(np.nanmedian(squares)) / _MEDIAN / _UNUSUAL)
+        gated = window.gated(q, rate, limit) if np.any(squares > limit) else window
         if limit == _GATE and np.array_equal(gated.dof, kept.dof):
             break
         kept = gated
@@ -118,8 +118,9 @@ def _fitted(
 def _without_wild(window: AnyEvidence, arc: Arc) -> AnyEvidence:
     """Return a window less what is far from the prediction, by the prediction's own errors."""
     predicted = along(arc, window.times)
-    usual = float(np.nanquantile(window.squares(*predicted), _TAME))
-    return window.gated(*predicted, _GATE + _WILD_SHARE * usual)
+    squares = window.squares(*predicted)
+    limit = _GATE + _WILD_SHARE * float(np.nanquantile(squares, _TAME))
+    return window.gated(*predicted, limit) if np.any(squares > limit) else window
 
 
 def _wider(evidence: Evidence, found: Descent, low: float, high: float) -> tuple[float, float]:

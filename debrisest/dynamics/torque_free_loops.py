@@ -10,6 +10,7 @@ import numpy as np
 
 from debrisest.arrays import Array, ComplexArray
 from debrisest.compiled import compiled
+from debrisest.dynamics.sine_loops import sines
 
 Body = tuple[Any, ...]
 _MOST = 24  # Landen transformations and steps of means, of which a handful is needed
@@ -49,8 +50,7 @@ def at(times: Array, body: Body, rate: Array, about: Array) -> None:
     motion, harmonics, by_rate, side, hand, _ = body
     _rates(times, motion, rate)
     turn = _turned(times, harmonics, 2.0 * motion[3] / motion[2][0])
-    for t in range(len(times)):
-        about[0, t], about[1, t] = math.cos(0.5 * turn[t]), math.sin(0.5 * turn[t])
+    sines(0.5 * turn, about[1], about[0])
     for t in range(len(times)):
         cos, sin = about[0, t], about[1, t]
         cosine = math.sqrt(0.5 + 0.5 * side * by_rate[0] * rate[0, t])
@@ -104,8 +104,9 @@ def _rates(times: Array, motion: Body, rate: Array) -> None:
     (a, b, c), (slope_a, slope_b, slope_c), shape, quarter, moduli = motion
     for t in range(len(times)):
         angle = shape[0] * times[t] / (4.0 * quarter)
-        angle = 2.0 * math.pi * (angle - np.rint(angle))
-        rate[0, t], rate[1, t], rate[2, t] = 1.0, math.sin(angle), math.cos(angle)
+        rate[0, t] = 2.0 * math.pi * (angle - np.rint(angle))
+    sines(rate[0], rate[1], rate[2])
+    rate[0] = 1.0
     for k in range(len(moduli) - 1, -1, -1):
         modulus, rest = moduli[k]
         for t in range(len(times)):
@@ -151,9 +152,7 @@ def _turned(times: Array, harmonics: tuple[float, ComplexArray], period: float) 
     """Turn about the angular momentum since the epoch (time,), rad."""
     mean, tails = harmonics
     cos, sin = np.empty(len(times)), np.empty(len(times))
-    for t in range(len(times)):
-        angle = math.pi * times[t] / period
-        cos[t], sin[t] = math.cos(angle), math.sin(angle)
+    sines(math.pi / period * times, sin, cos)
     real, imaginary = np.zeros(len(times)), np.zeros(len(times))
     for tail in tails:
         for t in range(len(times)):

@@ -20,7 +20,7 @@ class Batch(FilterPart):
     """
 
     takes = "motion_model"
-    version = 5
+    version = 6
     makes_start = True
     kind: Literal["batch"]
     online: bool = False

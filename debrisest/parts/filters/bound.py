@@ -53,7 +53,7 @@ class Efficient(FilterPart):
 class LandmarkBound(FilterPart):
     """The Cramer-Rao bound as an estimator: linearised at the truth, fed with the same data."""
 
-    version = 2
+    version = 3
     takes = "landmark_model"
     needs_truth = True
     kind: Literal["landmark_bound"]

@@ -28,7 +28,7 @@ _FEWEST_FRAMES = 5
 
 
 class _LandmarkFilter(FilterPart):
-    version = 4
+    version = 5
     takes = "landmark_model"
     iterations: Annotated[int, Field(ge=1)] = 3
     """Linearisations of a frame at most."""
@@ -47,7 +47,7 @@ class LandmarkBatch(_LandmarkFilter):
     iterated filter carries it on. Up to the end of the first windows it is their own.
     """
 
-    version = 5
+    version = 6
     kind: Literal["landmark_batch"]
     windows_s: list[Positive] = [50.0, 100.0, 200.0, 350.0, 600.0]
     """Lengths of the windows."""
@@ -128,7 +128,7 @@ class LandmarkFilter(_LandmarkFilter):
     The sigmas that it tells take nothing for known about the gauge that was not known at the start.
     """
 
-    version = 5
+    version = 6
     kind: Literal["landmark_filter"]
     annealing: NonNegative = 100.0
     """The variance of the noise is multiplied by 1 + this at time zero."""
