@@ -4,9 +4,9 @@ A feature is an area, not a point. Of one of scale s (its sigma, px) on a surfac
 middle of what an image shows lies nearer to the body's middle than the surface does, since the side
 that faces away is foreshortened: ``sin(a + b)``, weighted by ``cos(a + b)`` with a variance
 ``(s/r)^2`` of b, has the mean ``sin a (1 - 3/2 (s/r)^2)``. On a rendered stage, triangulated with
-the true poses, features of 1.6 to 8 px lie inside by this ``3/2 s^2/r``. It draws the poses too. So
-the half of each image's features that are smallest tell them, and what is off counts by the law of
-Cauchy.
+the true poses, features of 1.6 to 8 px lie inside by this ``3/2 s^2/r``; near the outline, where a
+part of them is hidden, they draw the poses too. So the half of each image's features that are
+smallest tell these, and what is off counts by the law of Cauchy.
 """
 
 from collections import Counter

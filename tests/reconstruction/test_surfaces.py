@@ -6,10 +6,11 @@ import pytest
 from debrisest.reconstruction import fusion
 from debrisest.reconstruction.closed_mesh import closed_mesh
 from debrisest.reconstruction.dense_cloud import OrientedCloud, dense_cloud
-from debrisest.reconstruction.depth import DepthView, View
+from debrisest.reconstruction.depth import DepthView, View, _pairs
+from debrisest.reconstruction.normals import facing_surface
 from debrisest.reconstruction.oriented import oriented
 from debrisest.reconstruction.poisson import poisson_mesh
-from debrisest.reconstruction.structure import Structure
+from debrisest.reconstruction.structure import Rig, Structure
 from debrisest.vision.polyhedron import mass_properties
 
 RADIUS, RANGE, FOCAL = 1.0, 12.0, 400.0
@@ -172,3 +173,24 @@ def test_points_of_a_plane_close_to_no_body():
     cloud = OrientedCloud(points, np.tile([0.0, 0.0, 1.0], (500, 1)))
     with pytest.raises(ValueError):
         closed_mesh(*poisson_mesh(cloud, 4))
+
+
+def test_smoothing_takes_little_from_a_surface_that_bends():
+    """One average with a sigma of two pixels takes half its square times both curvatures."""
+    depth, _ = sphere_depth()
+    surface = facing_surface(DepthView(View(MATRIX, np.eye(3), np.zeros(3)), depth))
+    radius = np.linalg.norm(surface.points - [0.0, 0.0, RANGE], axis=-1)
+    faces = surface.cosine > 0.8
+    assert faces.sum() > 1000
+    once = (2.0 * RANGE / FOCAL) ** 2 / RADIUS
+    assert abs(np.median(radius[faces]) - RADIUS) < 0.2 * once
+
+
+def test_an_image_of_one_camera_is_paired_with_the_ones_before_and_after():
+    turns = np.stack([looking(np.array([np.cos(a), np.sin(a), 0.0])) for a in 0.14 * np.arange(4)])
+    shift = np.tile([0.0, 0.0, RANGE], (4, 1))
+    shift[2] = np.nan
+    structure = Structure(turns, shift, np.zeros((1, 3)), np.ones((4, 1), dtype=bool), 0.0, 0.0)
+    rig = Rig(MATRIX[None], np.eye(3)[None], np.zeros((1, 3)))
+    pairs = [(first[0], second[0]) for _, (first, second) in _pairs(rig, structure)]
+    assert pairs == [(0, 1), (1, 0), (1, 3), (3, 1)]
