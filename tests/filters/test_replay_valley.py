@@ -123,3 +123,15 @@ def test_all_but_what_is_held_is_at_its_best(error: int) -> None:
     at = gauss_newton(model, arc, prior, EPOCHS - 1, 5, 1e-9, held=held).at
     way = spread[:, :, error] / spread[:, error, error, None]
     np.testing.assert_allclose(at.state, best + value[:, None] * way, atol=1e-6)
+
+
+def test_where_all_runs_are_lost_nothing_is_followed():
+    _, (model, *rest), found, _ = found_of(product())
+    lost = found._replace(state=np.full_like(found.state, np.nan))
+
+    def never(*_):
+        raise AssertionError("a batch without runs was followed")
+
+    after = with_bends(model._replace(rewind=never), *rest, lost)
+    np.testing.assert_array_equal(after.sigma, lost.sigma)
+    np.testing.assert_array_equal(after.covariance, lost.covariance)

@@ -77,7 +77,8 @@ def with_bends(
     for slot, k in enumerate(found.kept):
         last = measured.shape[1] - 1 if smoothed else int(k)
         runs = np.flatnonzero(finite(found.state[:, k], spread[:, slot]))
-        for some in np.split(runs, range(_TOGETHER, len(runs), _TOGETHER)):
+        parts = np.split(runs, range(_TOGETHER, len(runs), _TOGETHER))
+        for some in filter(len, parts):  # none, where all runs are lost by then
             part = model.of(some)
             arc = measured_arc(part, prior[some], covariance[some], measured[some, : last + 1])
             start = part.rewind(found.state[some, k], int(k))
