@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import reduce
 from importlib.util import find_spec
+from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -30,6 +31,7 @@ from debrisest.scenario.mistakes import NAMED, validated
 from debrisest.scenario.names import VARIANT, case_name_problems, check_scenario_name
 from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
 
+MOST_CASES = 50_000
 NOMINAL = "nominal"
 """The case of a scenario that has neither cases nor a grid."""
 
@@ -175,6 +177,12 @@ def _layers_of_cases(document: Document, listed: CasesAndGrid) -> dict[str, _Lay
     cases = cases or {NOMINAL: [base]}
     if not listed.grid:
         return {name: _Layers(name, documents) for name, documents in cases.items()}
+    count = len(cases) * prod(map(len, listed.grid.values()))
+    if count > MOST_CASES:
+        told = (
+            f"grid: makes {count} cases, and at most {MOST_CASES} are possible; vary fewer values"
+        )
+        raise UserError(f"{document.place(('grid',))}: {told}")
     grid = points(document, listed.grid)
     if len({point.name for point in grid}) < len(grid):
         raise UserError(f"{document.place(('grid',))}: two points of the grid have one name")

@@ -9,6 +9,8 @@ from pydantic_core import ErrorDetails
 from debrisest.errors import allowed_names, meant
 from debrisest.scenario.document import Document, KeyPath, Problem
 
+MOST_TOLD = 100
+"""Mistakes of one scenario beyond which only their number is told."""
 NAMED = ("observers", "sensors", "starts", "estimators")
 """Keys whose entries have names of the user's choice."""
 
@@ -24,13 +26,15 @@ def validated(document: Document, model: Any, folder: Path) -> tuple[Any, list[P
 def problems_of(
     error: ValidationError, document: Document, model: type[BaseModel]
 ) -> list[Problem]:
-    """Return every problem of a document that failed the schema, at the place of its key."""
-    found = []
-    for detail in error.errors(include_url=False):
+    """Return the problems of a document that failed the schema, each at the place of its key."""
+    found, every = [], error.errors(include_url=False)
+    for detail in every[:MOST_TOLD]:
         path = _path_in(document.value, detail)
         name = ".".join(map(str, path)) or "scenario"
         message = _message(detail, model) + _another(path, detail, document)
         found.append(Problem(document.place(path), f"{name}: {message}"))
+    if more := len(every) - len(found):
+        found.append(Problem(document.place(()), f"and {more} more mistakes; mend these first"))
     return found
 
 

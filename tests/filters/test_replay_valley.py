@@ -154,3 +154,15 @@ def test_all_epochs_of_a_smoother_have_the_spread_of_one_motion() -> None:
     wide = filtered.sigma[:, -1, SLOPE] > 1.5 * found.sigma[:, -1, SLOPE]
     assert wide.any()
     assert np.all(told.sigma[wide, -1, SLOPE] > 1.3 * final.sigma[wide, -1, SLOPE])
+
+
+def test_where_all_runs_are_lost_nothing_is_followed():
+    _, (model, *rest), found, _ = found_of(product())
+    lost = found._replace(state=np.full_like(found.state, np.nan))
+
+    def never(*_):
+        raise AssertionError("a batch without runs was followed")
+
+    after = with_bends(model._replace(rewind=never), *rest, lost)
+    np.testing.assert_array_equal(after.sigma, lost.sigma)
+    np.testing.assert_array_equal(after.covariance, lost.covariance)

@@ -57,3 +57,20 @@ def test_aliases_of_aliases_end_in_a_sentence(small: Path, cli: Any) -> None:
     assert result.exit_code == 2
     assert "aliases" in result.stderr
     assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_grid_of_far_too_many_cases_is_refused_before_it_is_made(small: Path, cli: Any):
+    keys = ("sensors.points.noise_m", "duration_s", "seed", "estimators.wahba.recovery.penalty")
+    values = list(range(1, 101))
+    small.write_text(small.read_text() + "grid:\n" + "".join(f"  {k}: {values}\n" for k in keys))
+    done = cli("validate", small)
+    assert done.exit_code == 2
+    assert f"{small}:78:" in done.stderr and "makes 200000000 cases" in done.stderr
+
+
+def test_of_mistakes_without_end_the_first_are_told(small: Path, cli: Any) -> None:
+    small.write_text(small.read_text() + "".join(f"unknown_{n}: 1\n" for n in range(5000)))
+    done = cli("validate", small)
+    assert done.exit_code == 2
+    assert "and 4900 more mistakes; mend these first" in done.stderr
+    assert "unknown_99" in done.stderr and "unknown_100:" not in done.stderr

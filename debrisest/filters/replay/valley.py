@@ -45,7 +45,8 @@ def with_bends(
         end = last if smoothed else int(kept[0])
         runs = np.flatnonzero(finite(found.state[:, end], spread[:, together[-1]]))
         size = max(1, _TOGETHER // (end + 1))
-        for some in np.split(runs, range(size, len(runs), size)):
+        parts = np.split(runs, range(size, len(runs), size))
+        for some in filter(len, parts):  # none, where all runs are lost by then
             part = model.of(some)
             arc = measured_arc(part, prior[some], covariance[some], measured[some, : end + 1])
             start = part.rewind(found.state[some, end], end)
