@@ -1,5 +1,7 @@
 """Two-body motion around the Earth, in inertial axes (ECI)."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from debrisest.arrays import Array
@@ -65,34 +67,64 @@ def shape_and_anomaly(
     return axis, float(np.hypot(e_cos, e_sin)), float(np.arctan2(e_sin, e_cos))
 
 
-def propagate(
-    position: Array, velocity: Array, times: Array, mu: float = MU_EARTH
-) -> tuple[Array, Array]:
-    """Position and velocity ``(..., time, 3)`` at ``times (time,)`` after the given state.
+class Ellipse(NamedTuple):
+    """An elliptic orbit through a state, and what stays along it, each ``(..., 1)``."""
 
-    Lagrange coefficients in the difference of the eccentric anomaly; elliptic orbits only.
-    """
+    position: Array
+    """At time zero ``(..., 3)``, as the velocity."""
+    velocity: Array
+    radius: Array
+    axis: Array
+    motion: Array
+    """Mean, rad/s."""
+    e_cos: Array
+    """Eccentricity times the cosine of the eccentric anomaly at time zero."""
+    e_sin: Array
+
+    def positions(self, times: Array) -> Array:
+        """Positions ``(..., time, 3)`` at ``times (time,)``."""
+        return self._at(*self._turned(times))
+
+    def states(self, times: Array) -> tuple[Array, Array]:
+        """Positions and velocities ``(..., time, 3)``, by Lagrange coefficients."""
+        cosine, sine = self._turned(times)
+        new_radius = self.axis * (1.0 - self.e_cos * cosine + self.e_sin * sine)
+        f_dot = -self.motion * self.axis**2 / (self.radius * new_radius) * sine
+        g_dot = 1.0 - self.axis / new_radius * (1.0 - cosine)
+        return self._at(cosine, sine), self._sum(f_dot, g_dot)
+
+    def _turned(self, times: Array) -> tuple[Array, Array]:
+        advance = _anomaly_advance(self.motion * times, self.e_cos, self.e_sin)
+        return np.cos(advance), np.sin(advance)
+
+    def _at(self, cosine: Array, sine: Array) -> Array:
+        f = 1.0 - self.axis / self.radius * (1.0 - cosine)
+        g = (self.radius / self.axis * sine + self.e_sin * (1.0 - cosine)) / self.motion
+        return self._sum(f, g)
+
+    def _sum(self, f: Array, g: Array) -> Array:
+        start, heading = self.position[..., None, :], self.velocity[..., None, :]
+        return np.asarray(f[..., None] * start + g[..., None] * heading)
+
+
+def ellipse(position: Array, velocity: Array, mu: float = MU_EARTH) -> Ellipse:
+    """Orbit through a state ``(..., 3)``; raise ValueError where it is open."""
     position, velocity = np.broadcast_arrays(position, velocity)
     radius = np.linalg.norm(position, axis=-1, keepdims=True)
     energy = 0.5 * np.sum(velocity**2, axis=-1, keepdims=True) - mu / radius
     if np.any(energy >= 0.0):
         raise ValueError("the orbit is open: only elliptic orbits are propagated")
     axis = -0.5 * mu / energy
-    motion = np.sqrt(mu / axis**3)
-    e_cos = 1.0 - radius / axis
     e_sin = np.sum(position * velocity, axis=-1, keepdims=True) / np.sqrt(mu * axis)
-    advance = _anomaly_advance(motion * times, e_cos, e_sin)
-    cosine, sine = np.cos(advance), np.sin(advance)
-    new_radius = axis * (1.0 - e_cos * cosine + e_sin * sine)
-    f = 1.0 - axis / radius * (1.0 - cosine)
-    g = (radius / axis * sine + e_sin * (1.0 - cosine)) / motion
-    f_dot = -motion * axis**2 / (radius * new_radius) * sine
-    g_dot = 1.0 - axis / new_radius * (1.0 - cosine)
-    start, heading = position[..., None, :], velocity[..., None, :]
-    return (
-        f[..., None] * start + g[..., None] * heading,
-        f_dot[..., None] * start + g_dot[..., None] * heading,
-    )
+    motion = np.sqrt(mu / axis**3)
+    return Ellipse(position, velocity, radius, axis, motion, 1.0 - radius / axis, e_sin)
+
+
+def propagate(
+    position: Array, velocity: Array, times: Array, mu: float = MU_EARTH
+) -> tuple[Array, Array]:
+    """Position and velocity ``(..., time, 3)`` at ``times (time,)`` after a state of an ellipse."""
+    return ellipse(position, velocity, mu).states(times)
 
 
 def _anomaly_advance(mean_advance: Array, e_cos: Array, e_sin: Array) -> Array:

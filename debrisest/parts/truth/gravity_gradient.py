@@ -8,7 +8,7 @@ from debrisest.arrays import Array, Data
 from debrisest.clock import Clock
 from debrisest.draws import Draws
 from debrisest.dynamics.gravity_gradient import tumble
-from debrisest.dynamics.kepler import propagate
+from debrisest.dynamics.kepler import Ellipse, ellipse
 from debrisest.parts.truth.each_run import each_body
 from debrisest.roles import SimulationPart, UnitQuaternion, Vector3
 
@@ -29,19 +29,17 @@ class GravityGradient(SimulationPart):
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude and rate of the body axes, the same in every run of the same body."""
-        start = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+        orbit = ellipse(data["orbit_position"][0, 0], data["orbit_velocity"][0, 0])
         inertias = data["true_inertia_b"]
-        return each_body(lambda inertia: self._rotation(inertia, start, clock), inertias)
+        return each_body(lambda inertia: self._rotation(inertia, orbit, clock), inertias)
 
-    def _rotation(
-        self, inertia: Array, orbit: tuple[Array, Array], clock: Clock
-    ) -> dict[str, Array]:
+    def _rotation(self, inertia: Array, orbit: Ellipse, clock: Clock) -> dict[str, Array]:
         q_ib, rate_b = tumble(
             clock.times,
             np.array(self.q_ib),
             np.radians(self.rate_deg_s),
             inertia,
-            lambda time: propagate(*orbit, np.array([time]))[0][0],
+            lambda time: orbit.positions(np.array([time]))[0],
             np.array(self.torque_n_m),
         )
         return {"true_q_ib": q_ib, "true_rate_b": rate_b}

@@ -9,7 +9,7 @@ from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.draws import Draws, Stream
 from debrisest.dynamics.gravity_gradient import tumble
-from debrisest.dynamics.kepler import propagate
+from debrisest.dynamics.kepler import ellipse
 from debrisest.roles import Limits, NonNegative, SimulationPart
 
 
@@ -24,7 +24,7 @@ class RandomTumble(SimulationPart):
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude and rate of the body axes of each run."""
-        position, velocity = data["orbit_position"][0, 0], data["orbit_velocity"][0, 0]
+        orbit = ellipse(data["orbit_position"][0, 0], data["orbit_velocity"][0, 0])
         q_ib = quaternion.normalize(draws.normal(Stream.TRUTH, (4,)))
         axis = draws.normal(Stream.TRUTH, (3,))
         axis /= np.linalg.norm(axis, axis=-1, keepdims=True)
@@ -34,7 +34,7 @@ class RandomTumble(SimulationPart):
             tumble(
                 clock.times,
                 *start,
-                lambda time: propagate(position, velocity, np.array([time]))[0][0],
+                lambda time: orbit.positions(np.array([time]))[0],
             )
             for start in zip(q_ib, rate, data["true_inertia_b"])
         ]
