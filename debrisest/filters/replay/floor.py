@@ -1,10 +1,9 @@
 """The floor of the cost along one error: the least cost with that error held, to both sides of it.
 
 It is sought three sigma away, from the line on that the covariance says, and followed on where it
-is lower than nine. Most floors bend a little on the way there: a line is on the floor in few runs
-only, so that a look at the cost along it spares next to nothing. What spares the most is that the
-held error is put back after every step, whose charts bend, and that what the floor is off the line
-ahead is taken for what it is off behind.
+is lower than nine. A look along the line does not tell: of a product it is a parabola, though its
+floor is not. The held error is put back after every step, whose charts bend, and what the floor is
+off the line ahead is what it is begun with behind.
 """
 
 from collections.abc import Sequence
@@ -63,9 +62,9 @@ def errors_per_sigma(
     toward = sides.sign[:, None] * spread[sides.run, :, sides.error] / sides.sigma[:, None]
     ends, far = _followed(model, arc, at, sides, toward)
     part = model.of(sides.run)
-    estimate, end = (part.shown(state, max(epochs))[0] for state in (at.state[sides.run], ends))
+    estimate, end = model.shown(at.state, max(epochs))[0], part.shown(ends, max(epochs))[0]
     for slot, k in enumerate(epochs):
-        at_k = estimate[:, k]
+        at_k = estimate[sides.run, k]
         error = part.inverse_chart(at_k) @ part.difference(end[:, k], at_k)[..., None]
         way = sides.sign[:, None] * error[..., 0] / far[:, None]
         for i in range(2):
