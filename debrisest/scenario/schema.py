@@ -1,9 +1,10 @@
 """What a scenario file may hold. The kinds come from the catalog."""
 
+from collections import Counter
 from collections.abc import Sequence
 from functools import cache, reduce
 from operator import or_
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -61,6 +62,22 @@ StatisticName = Annotated[
 ]
 
 
+def _distinct(names: list[str]) -> list[str]:
+    for name, times in Counter(names).items():
+        if times > 1:
+            raise ValueError(f"{name!r} is there {times} times")
+    return names
+
+
+_Text = TypeVar("_Text")
+Distinct = Annotated[
+    list[_Text],
+    Field(min_length=1, json_schema_extra={"uniqueItems": True}),
+    AfterValidator(_distinct),
+]
+"""At least one, and none of them twice, which would count it as two."""
+
+
 class Divergence(Keys):
     """A run has diverged if a quantity over a window, by default its RMS, is above a limit."""
 
@@ -87,11 +104,11 @@ class Table(Keys):
     stage: Literal["simulate", "recover", "filter"]
     """Whose errors: those of the recovery or those of the filter; or figures of what was
     simulated."""
-    quantities: Annotated[list[QuantityName], Field(min_length=1)]
+    quantities: Distinct[QuantityName]
     """Quantities."""
-    statistics: Annotated[list[StatisticName], Field(min_length=1)]
+    statistics: Distinct[StatisticName]
     """Statistics."""
-    windows: Annotated[list[WindowText], Field(min_length=1)]
+    windows: Distinct[WindowText]
     """Windows."""
     cases: list[str] | None = None
     """Cases and means that the table shows; none: all."""
@@ -121,7 +138,7 @@ class Tables(Keys):
     last third."""
     diverged: list[Divergence] = []
     """Which runs count as diverged."""
-    means: dict[CaseName, list[str]] = {}
+    means: dict[CaseName, Distinct[str]] = {}
     """Means over cases: a name that no case has, and its cases."""
     layout: list[Table] = []
     """The tables."""

@@ -39,6 +39,14 @@ REFUSED = {
     ),
     "tag": ("made for the tests", 'made \U000e0041 for', ["U+E0041", "small.yaml:2:"]),
     "formula": ('table: "2"', 'table: "=HYPERLINK(1)"', ["tables.layout.1.table", "=HYPERLINK"]),
+    "case_twice_in_a_mean": (
+        "mean: [slow, fast]", "mean: [slow, slow]", ["54:5: tables.means.mean: 'slow' is there 2"],
+    ),
+    "mean_of_nothing": ("mean: [slow, fast]", "mean: []", ["54:5: tables.means.mean: "]),
+    "quantity_twice": (
+        "[rate_1, pitch]", "[pitch, pitch]", ["tables.layout.1.quantities: 'pitch' is there 2"],
+    ),
+    "window_twice": ("[40-60 s, end]", "[end, end]", ["tables.layout.1.windows: 'end' is there"]),
     "mean": ("    mean: [", '    "=1+1": [', ["tables.means.=1+1"]),
     "nul_in_a_path": ("published: small.csv", 'published: "small\\0.csv"', ["U+0000"]),
 }  # fmt: skip
