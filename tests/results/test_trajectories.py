@@ -126,6 +126,7 @@ def test_what_is_compressed_comes_back(runs: int) -> None:
     rate = rng.standard_normal((runs, 1499, 3))
     same = np.tile(rng.standard_normal((1, 1499, 4)), (runs, 1, 1))
     seen = np.where(rng.random((runs, 1499, 1, 30, 1)) < 0.01, rng.random((2,)), np.nan)
+    ends = np.where((np.abs(np.arange(1499) - 700) < 600)[:, None], np.nan, rate)
     data = as_stored(
         {
             "run": np.arange(runs),
@@ -134,6 +135,7 @@ def test_what_is_compressed_comes_back(runs: int) -> None:
             "true_q_ib": same,
             "measured_pixel": seen,
             "q_ib": np.full((runs, 1499, 4), np.nan),
+            "true_position": ends,
         }
     )
     image = image_of(data, {"datasets": "{}"}, {})
@@ -141,6 +143,7 @@ def test_what_is_compressed_comes_back(runs: int) -> None:
         plain, packed = file["rate_b"], file["measured_pixel"]
         assert plain.compression is None and packed.compression == "gzip"
         assert file["q_ib"].id.get_storage_size() == 0
+        assert file["true_position"].id.get_storage_size() < 0.3 * rate.nbytes
         assert data.keys() <= file.keys()
         for name, values in data.items():
             assert file[name][()].tobytes() == values.tobytes(), name
