@@ -37,7 +37,7 @@ class Problem(NamedTuple):
 
     def __str__(self) -> str:
         """Return the line that is shown to the user."""
-        return f"{self.place}: {self.message}"
+        return f"{self.place}: {self.message}".replace("\n", "\\n")
 
 
 @dataclass(frozen=True)

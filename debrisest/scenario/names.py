@@ -76,7 +76,7 @@ def case_name_problems(names: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the cases that cannot have their names, each with the reason."""
     names = list(names)
     for name in names:
-        if name.casefold() == "plots" or name.casefold().startswith(_TAKEN):
+        if name.casefold() in ("plots", "cells.json") or name.casefold().startswith(_TAKEN):
             yield name, "this name is taken by a file of results; choose another"
         if name.endswith(".") or PureWindowsPath(name).is_reserved():
             yield name, "Windows can have no folder of this name; choose another"

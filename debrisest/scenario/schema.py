@@ -138,7 +138,7 @@ class Tables(Keys):
     last third."""
     diverged: list[Divergence] = []
     """Which runs count as diverged."""
-    means: dict[CaseName, Distinct[str]] = {}
+    means: dict[CaseName, Annotated[list[str], AfterValidator(_distinct)]] = {}
     """Means over cases: a name that no case has, and its cases."""
     layout: list[Table] = []
     """The tables."""

@@ -42,7 +42,7 @@ REFUSED = {
     "case_twice_in_a_mean": (
         "mean: [slow, fast]", "mean: [slow, slow]", ["54:5: tables.means.mean: 'slow' is there 2"],
     ),
-    "mean_of_nothing": ("mean: [slow, fast]", "mean: []", ["54:5: tables.means.mean: "]),
+    "two_lines_in_a_sensor": ("  points: {kind", '  "p\\nq": {kind', ["sensors.p\\nq: a name has"]),
     "quantity_twice": (
         "[rate_1, pitch]", "[pitch, pitch]", ["tables.layout.1.quantities: 'pitch' is there 2"],
     ),

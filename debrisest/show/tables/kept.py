@@ -16,7 +16,7 @@ from debrisest.scenario.load import LoadedScenario
 from debrisest.show.tables.cells import Row
 from debrisest.show.tables.published import published_values
 
-NAME = "tables.cells.json"
+NAME = "cells.json"
 
 
 def kept(scenario: LoadedScenario, results: Results, make: Callable[[], list[Row]]) -> list[Row]:
