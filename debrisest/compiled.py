@@ -7,10 +7,12 @@ numba, where numba cannot be imported, and where the environment has ``DEBRISEST
 import os
 from collections.abc import Callable
 from functools import cache
+from hashlib import sha256
 from importlib.metadata import PackageNotFoundError
 from importlib.metadata import version as version_of
 from importlib.util import find_spec
-from typing import TypeVar, cast
+from pathlib import Path
+from typing import Any, TypeVar, cast
 
 Kernel = TypeVar("Kernel", bound=Callable[..., object])
 
@@ -36,9 +38,25 @@ def available() -> bool:
 
 def compiled(kernel: Kernel) -> Kernel:
     """Return the loops compiled, by the cache on disk where there is a place for one."""
-    from numba import njit
+    import numba
 
+    config: Any = numba.config
+    given = config.CACHE_DIR
+    config.CACHE_DIR = str(_cache(given))
     try:
-        return cast(Kernel, njit(cache=True, error_model="numpy")(kernel))
+        return cast(Kernel, numba.njit(cache=True, error_model="numpy")(kernel))
     except RuntimeError:
-        return cast(Kernel, njit(error_model="numpy")(kernel))
+        return cast(Kernel, numba.njit(error_model="numpy")(kernel))
+    finally:
+        config.CACHE_DIR = given
+
+
+@cache
+def _cache(given: str) -> Path:
+    """Return a folder that is named after the source of all loops.
+
+    Numba looks for changes in a kernel's own file alone, not in those of the kernels that it calls.
+    """
+    package = Path(__file__).parent
+    source = b"".join(path.read_bytes() for path in sorted(package.rglob("*_loops.py")))
+    return Path(given or package / "__pycache__") / f"loops-{sha256(source).hexdigest()[:16]}"
