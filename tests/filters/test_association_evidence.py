@@ -8,11 +8,12 @@ import pytest
 from debrisest.filters.association.companions import pairs
 from debrisest.filters.association.evidence import score_sigma
 from debrisest.filters.association.restless import FACTORS, log_ratio
+from debrisest.filters.association.self_tests import agitation_test, companion_test, crowd_test
 from debrisest.filters.association.single import associated
 from debrisest.filters.association.weights import Validation
 from debrisest.filters.doubt import Doubt
 from debrisest.filters.scan_model import ScanModel
-from debrisest.filters.self_test import agitation_test, companion_test, crowd_test, score_test
+from debrisest.filters.self_test import score_test
 
 RUNS, EPOCHS = 400, 60
 F = np.array([[1.0, 1.0], [0.0, 1.0]])

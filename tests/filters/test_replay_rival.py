@@ -7,7 +7,7 @@ from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay.self_tests import self_tests
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.rivals import GIVEN_UP
-from debrisest.filters.self_test import Verdict, judged
+from debrisest.filters.verdict import Verdict, judged
 
 RUNS, EPOCHS = 40, 30
 SIGMA = np.array([0.01, 1.0])

@@ -6,7 +6,7 @@ import pytest
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay.self_tests import _scores, self_tests
 from debrisest.filters.replay_model import Doubt, ReplayModel
-from debrisest.filters.self_test import judged, told
+from debrisest.filters.verdict import judged, told
 
 RUNS, EPOCHS, SIGMA = 200, 60, 0.5
 DOUBT = Doubt("a slope of {size:.2f} ({value})", 10.0, lambda s, _, __, ___: _times(s)[..., None])

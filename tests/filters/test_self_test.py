@@ -4,21 +4,18 @@ import numpy as np
 import pytest
 
 from debrisest.assessment.silent import silent_failures
+from debrisest.filters.association.self_tests import missed_test
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.self_test import (
-    SelfTest,
-    Verdict,
     bend_test,
     block_test,
     cost_test,
-    judged,
     lost_test,
-    missed_test,
     parts_test,
     rival_test,
     score_test,
-    told,
 )
+from debrisest.filters.verdict import SelfTest, Verdict, judged, told
 
 RUNS = 2000
 

@@ -6,7 +6,7 @@ from pydantic import ValidationError
 
 from debrisest.clock import Clock
 from debrisest.filters.scan_model import ScanModel
-from debrisest.filters.self_test import Verdict
+from debrisest.filters.verdict import Verdict
 from debrisest.parts.filters.association import (
     AssociationFilter,
     JointAssociation,

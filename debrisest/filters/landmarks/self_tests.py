@@ -13,7 +13,6 @@ from debrisest.filters.landmarks.whole_arc import Arc
 from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.runs import take
 from debrisest.filters.self_test import (
-    SelfTest,
     bend_test,
     block_test,
     cost_test,
@@ -22,6 +21,7 @@ from debrisest.filters.self_test import (
     rival_test,
     score_test,
 )
+from debrisest.filters.verdict import SelfTest
 
 _FEWEST = 4
 _NO_FIT = 4.0

@@ -11,7 +11,8 @@ from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.replay.measured_arc import MeasuredArc, measured_arc
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import put
-from debrisest.filters.self_test import SelfTest, block_test, cost_test, rival_test, score_test
+from debrisest.filters.self_test import block_test, cost_test, rival_test, score_test
+from debrisest.filters.verdict import SelfTest
 
 _BLOCKS = 10
 _TOGETHER = 10  # runs at a time, for the sake of memory

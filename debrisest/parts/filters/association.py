@@ -8,20 +8,18 @@ from pydantic import Field, model_validator
 
 from debrisest.filters.association.evidence import score_sigma
 from debrisest.filters.association.restless import log_ratio
+from debrisest.filters.association.self_tests import (
+    agitation_test,
+    companion_test,
+    crowd_test,
+    missed_test,
+)
 from debrisest.filters.association.single import associated, jointly_associated
 from debrisest.filters.association.weights import Validation, inverse_unit_ball, unit_ball
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.scan_model import ScanModel
-from debrisest.filters.self_test import (
-    SelfTest,
-    agitation_test,
-    companion_test,
-    crowd_test,
-    innovation_test,
-    missed_test,
-    score_test,
-    told,
-)
+from debrisest.filters.self_test import innovation_test, score_test
+from debrisest.filters.verdict import SelfTest, told
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given, Positive
 

@@ -16,7 +16,8 @@ from debrisest.filters.estimates import Estimates
 from debrisest.filters.landmark_model import LandmarkModel, core_of, joined, points_of, split
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.scan_model import ScanModel
-from debrisest.filters.self_test import SelfTest, Verdict, cost_test, judged, lost_test, told
+from debrisest.filters.self_test import cost_test, lost_test
+from debrisest.filters.verdict import SelfTest, Verdict, judged, told
 from debrisest.parts.filters.association import counting
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given

@@ -10,7 +10,8 @@ from debrisest.filters.gate import Gate
 from debrisest.filters.kalman.extended import extended
 from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
 from debrisest.filters.model import Model
-from debrisest.filters.self_test import innovation_test, told
+from debrisest.filters.self_test import innovation_test
+from debrisest.filters.verdict import told
 from debrisest.roles import FilterPart, Given, NonNegative, Positive
 
 KeptTimes = Annotated[

@@ -18,7 +18,8 @@ from debrisest.filters.landmarks.landmark_filter import Annealing, landmark_filt
 from debrisest.filters.landmarks.self_tests import self_tests
 from debrisest.filters.landmarks.update import Belief, UpdateSettings
 from debrisest.filters.landmarks.whole_arc import Arc, whole_arc, window_ends
-from debrisest.filters.self_test import SelfTest, cost_test, gauge_test, told
+from debrisest.filters.self_test import cost_test, gauge_test
+from debrisest.filters.verdict import SelfTest, told
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given, NonNegative, Positive
 

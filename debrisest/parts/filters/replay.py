@@ -9,8 +9,8 @@ from debrisest.filters.replay.replay import RATIO, replay, smooth
 from debrisest.filters.replay.self_tests import self_tests
 from debrisest.filters.replay.valley import with_bends
 from debrisest.filters.replay_model import ReplayModel
-from debrisest.filters.self_test import told
 from debrisest.filters.status import ReplayStatus
+from debrisest.filters.verdict import told
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given
 

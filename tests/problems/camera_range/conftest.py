@@ -15,7 +15,7 @@ from debrisest.filters.landmarks.landmark_filter import landmark_filter
 from debrisest.filters.landmarks.self_tests import self_tests
 from debrisest.filters.landmarks.update import Belief, UpdateSettings
 from debrisest.filters.landmarks.whole_arc import whole_arc
-from debrisest.filters.self_test import judged
+from debrisest.filters.verdict import judged
 from debrisest.problems.camera_range.model import CameraRangeGeometry
 from debrisest.problems.camera_range.projection import landmark_model
 

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from debrisest.filters.landmarks.growing_windows import Window
-from debrisest.filters.self_test import Verdict
+from debrisest.filters.verdict import Verdict
 
 RATE = slice(3, 6)
 SHORT = [Window(10, 1), Window(20, 1), Window(40, 1)]

@@ -6,7 +6,7 @@ from debrisest.filters.landmark_model import LandmarkModel
 from debrisest.filters.landmarks.batch_start import Batch, batch_problem, batch_start
 from debrisest.filters.landmarks.cost import Prior
 from debrisest.filters.landmarks.growing_windows import Window, fit, fresh
-from debrisest.filters.self_test import Verdict
+from debrisest.filters.verdict import Verdict
 
 SHORT = [Window(10, 1), Window(20, 1), Window(40, 1)]
 RATE = slice(3, 6)

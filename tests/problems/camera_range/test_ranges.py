@@ -6,7 +6,7 @@ import pytest
 from debrisest.filters.landmark_model import points_of
 from debrisest.filters.landmarks.cost import Prior, Unknowns, cost
 from debrisest.filters.landmarks.growing_windows import Window, fresh, place
-from debrisest.filters.self_test import Verdict
+from debrisest.filters.verdict import Verdict
 
 POSITION = slice(6, 9)
 
