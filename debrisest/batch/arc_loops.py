@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.attitude.rotation_loops import matrix_of
 from debrisest.compiled import compiled
 from debrisest.dynamics.torque_free_loops import at, body_of
 
@@ -51,7 +52,7 @@ def derivatives(q: Array, rate: Array, step: Array) -> tuple[Array, Array]:
 def _one(times: Array, q0: Array, rate0: Array, matrix: Array, q_if: Array, rates: Array) -> None:
     """Write the motion of one arc."""
     moments, q_fb = _principal(matrix)
-    axes = _matrix_of(q_fb)
+    axes = matrix_of(q_fb)
     body = body_of(axes.T @ rate0, moments)
     axes = axes[:, body[-1]].copy()
     rate, about = np.empty((3, 1 + len(times))), np.empty((4, 1 + len(times)))
@@ -121,16 +122,3 @@ def _product(p: Array, q: Array) -> Array:
 @compiled
 def _conjugate(q: Array) -> Array:
     return np.array([q[0], -q[1], -q[2], -q[3]])
-
-
-@compiled
-def _matrix_of(q: Array) -> Array:
-    """Rotation matrix (3, 3) of a unit quaternion."""
-    w, x, y, z = q
-    return np.array(
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
-    )

@@ -6,6 +6,7 @@ Equations are those of `relative_arc`, where their words are.
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.attitude.rotation_loops import matrix_of
 from debrisest.compiled import compiled
 
 
@@ -31,7 +32,7 @@ def relative(
             w, x, y, z = q_ib[run, t]
             q[run, t, 0], q[run, t, 1] = c * w + s * z, c * x + s * y
             q[run, t, 2], q[run, t, 3] = c * y - s * x, c * z - s * w
-            turn, found = _matrix(q[run, t]), sensitivity[run, t]
+            turn, found = matrix_of(q[run, t]), sensitivity[run, t]
             x, y, z = rate_b[run, t]
             for i in range(3):
                 whole[i] = turn[i, 0] * x + turn[i, 1] * y + turn[i, 2] * z
@@ -61,15 +62,3 @@ def _column(by: Array, start: Array, b: int) -> tuple[float, float, float]:
         y += by[1, a] * start[a, b]
         z += by[2, a] * start[a, b]
     return x, y, z
-
-
-@compiled
-def _matrix(q: Array) -> Array:
-    a, b, c, d = q
-    return np.array(
-        [
-            [1.0 - 2.0 * (c * c + d * d), 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
-            [2.0 * (b * c + a * d), 1.0 - 2.0 * (b * b + d * d), 2.0 * (c * d - a * b)],
-            [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), 1.0 - 2.0 * (b * b + c * c)],
-        ]
-    )

@@ -5,9 +5,9 @@ import pytest
 
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay.self_tests import self_tests
-from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.rivals import GIVEN_UP
 from debrisest.filters.verdict import Verdict, judged
+from tests.filters.constants import constants
 
 RUNS, EPOCHS = 40, 30
 SIGMA = np.array([0.01, 1.0])
@@ -23,33 +23,12 @@ def square(
 ):
     """A constant whose square is measured well, and itself badly."""
 
-    def trajectory(state, first, last):
-        epochs = abs(last - first) + 1
-        return np.repeat(state[:, None], epochs, 1), np.ones((len(state), epochs, 1, 1))
-
     def rows(states, sensitivity, first, epochs):
         value, slope = shape(states)
         both = np.concatenate([value, shown * states], -1)
         return both, np.stack([slope, np.full_like(slope, shown)], -2)
 
-    def identity(state):
-        return np.broadcast_to(np.eye(1), (len(state), 1, 1))
-
-    return ReplayModel(
-        trajectory=trajectory,
-        rows=rows,
-        transition=lambda sensitivity, first, last: sensitivity,
-        rewind=lambda state, epoch: state,
-        chart=identity,
-        inverse_chart=identity,
-        retract=lambda state, error: state + error,
-        difference=lambda state, reference: state - reference,
-        plain_difference=lambda state, reference: state - reference,
-        start=start,
-        sigma=SIGMA,
-        error_names=("a",),
-        mirror=mirror,
-    )
+    return constants(rows, SIGMA, ("a",), start, mirror=mirror)
 
 
 def data(shown=SHOWN, seed=0, prior_sigma=3.0):

@@ -5,8 +5,9 @@ import pytest
 
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay.self_tests import _scores, self_tests
-from debrisest.filters.replay_model import Doubt, ReplayModel
+from debrisest.filters.replay_model import Doubt
 from debrisest.filters.verdict import judged, told
+from tests.filters.constants import constants
 
 RUNS, EPOCHS, SIGMA = 200, 60, 0.5
 DOUBT = Doubt("a slope of {size:.2f} ({value})", 10.0, lambda s, _, __, ___: _times(s)[..., None])
@@ -19,26 +20,8 @@ def _times(states):
 def line():
     """A constant that is measured directly; what grows with time is doubted."""
 
-    def trajectory(state, first, last):
-        epochs = abs(last - first) + 1
-        return np.repeat(state[:, None], epochs, 1), np.ones((len(state), epochs, 1, 1))
-
-    identity = lambda state: np.broadcast_to(np.eye(1), (len(state), 1, 1))  # noqa: E731
-    return ReplayModel(
-        trajectory=trajectory,
-        rows=lambda states, sensitivity, first, epochs: (states, sensitivity),
-        transition=lambda sensitivity, first, last: sensitivity,
-        rewind=lambda state, epoch: state,
-        chart=identity,
-        inverse_chart=identity,
-        retract=lambda state, error: state + error,
-        difference=lambda state, reference: state - reference,
-        plain_difference=lambda state, reference: state - reference,
-        start=lambda prior, shown, epoch: prior,
-        sigma=np.array([SIGMA]),
-        error_names=("a",),
-        doubts=(DOUBT,),
-    )
+    rows = lambda states, sensitivity, first, epochs: (states, sensitivity)  # noqa: E731
+    return constants(rows, np.array([SIGMA]), ("a",), doubts=(DOUBT,))
 
 
 def fit_of(error=0.0, noise=1.0, seed=0):

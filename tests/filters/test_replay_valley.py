@@ -8,7 +8,7 @@ from debrisest.filters.replay.gauss_newton import Held, gauss_newton
 from debrisest.filters.replay.measured_arc import measured_arc
 from debrisest.filters.replay.replay import replay, smooth
 from debrisest.filters.replay.valley import with_bends
-from debrisest.filters.replay_model import ReplayModel
+from tests.filters.constants import constants
 
 RUNS, EPOCHS, SIGMA = 60, 30, 0.02
 TILT, SLOPE = 0, 1
@@ -18,33 +18,10 @@ PRIOR = np.array([0.3, 0.7])
 def model_of(shown, derivative, bending=(SLOPE,)):
     """Two constants, measured through a function of both at every epoch."""
 
-    def trajectory(state, first, last):
-        epochs = abs(last - first) + 1
-        return np.repeat(state[:, None], epochs, 1), np.ones((len(state), epochs, 1, 1))
-
     def rows(states, sensitivity, first, epochs):
         return shown(states)[..., None], derivative(states)[..., None, :]
 
-    def identity(state):
-        return np.broadcast_to(np.eye(2), (len(state), 2, 2))
-
-    return ReplayModel(
-        trajectory=trajectory,
-        rows=rows,
-        transition=lambda sensitivity, first, last: np.broadcast_to(
-            np.eye(2), (len(sensitivity), 2, 2)
-        ),
-        rewind=lambda state, epoch: state,
-        chart=identity,
-        inverse_chart=identity,
-        retract=lambda state, error: state + error,
-        difference=lambda state, reference: state - reference,
-        plain_difference=lambda state, reference: state - reference,
-        start=lambda prior, shown, epoch: prior,
-        sigma=np.array([SIGMA]),
-        error_names=("tilt", "slope"),
-        bending=bending,
-    )
+    return constants(rows, np.array([SIGMA]), ("tilt", "slope"), bending=bending)
 
 
 def product(bending=(SLOPE,)):

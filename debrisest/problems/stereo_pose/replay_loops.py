@@ -6,6 +6,7 @@ Equations are those of `replay.point_rows` and of `sensors/stereo.py`, where the
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
+from debrisest.attitude.rotation_loops import matrix_of
 from debrisest.compiled import compiled
 
 Vector = tuple[float, float, float]
@@ -41,7 +42,7 @@ def point_sums(
     whole, total, moved = np.empty((12, 12)), np.empty(12), np.empty((12, 14))
     for run in range(runs):
         for k in range(epochs):
-            state, turn = states[run, k], _matrix(states[run, k, 9:13])
+            state, turn = states[run, k], matrix_of(states[run, k, 9:13])
             at = turning[run, k], centre[k]
             whole[:], total[:] = 0.0, 0.0
             for point in range(points):
@@ -170,18 +171,6 @@ def _add_whole(
             gradient[6 + a] += turning[c, a] * total[6 + c]
             for b in range(6 + a, 14):
                 information[6 + a, b] += turning[c, a] * moved[6 + c, b]
-
-
-@compiled
-def _matrix(q: Array) -> Array:
-    a, b, c, d = q
-    return np.array(
-        [
-            [1.0 - 2.0 * (c * c + d * d), 2.0 * (b * c - a * d), 2.0 * (b * d + a * c)],
-            [2.0 * (b * c + a * d), 1.0 - 2.0 * (b * b + d * d), 2.0 * (c * d - a * b)],
-            [2.0 * (b * d - a * c), 2.0 * (c * d + a * b), 1.0 - 2.0 * (b * b + c * c)],
-        ]
-    )
 
 
 @compiled
