@@ -49,7 +49,10 @@ def test_arcs_relative_to_the_leader_are_the_same(monkeypatch, experiment, q_lc,
     same(*both(monkeypatch, lambda: (test.model.rewind(test.prior, last),)))
 
 
-@pytest.mark.parametrize("shown", [Shown(), Shown(flow=False), Shown(acceleration=True)])
+@pytest.mark.parametrize(
+    "shown",
+    [Shown(), Shown(flow=False), Shown(acceleration=True), Shown(False, False, False, True)],
+)
 @pytest.mark.parametrize("q_lc", [(1, 0, 0, 0), TURNED])
 def test_linearised_costs_are_the_same(monkeypatch, experiment, shown, q_lc) -> None:
     def found():

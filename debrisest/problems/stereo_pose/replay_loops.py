@@ -33,7 +33,7 @@ def point_sums(
     """
     runs, epochs = states.shape[:2]
     each = len(rows)
-    points = len(noise) // each
+    points = (states.shape[2] - 15) // 3
     n_e = 14 + 3 * points
     residual, information = np.empty((runs, epochs, len(noise))), np.zeros((runs, n_e, n_e))
     gradient, cost = np.zeros((runs, n_e)), np.zeros(runs)
