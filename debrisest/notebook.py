@@ -19,7 +19,8 @@ from debrisest.batch.motion import Motion
 from debrisest.errors import UserError
 from debrisest.measured.arrays import require_fitting
 from debrisest.plugins.load import load_plugins, read_plugins
-from debrisest.runner.plan import Selection, check_selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection, check_selection
 from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.described import described
 from debrisest.scenario.load import LoadedScenario, load_scenario

@@ -38,7 +38,8 @@ from debrisest.results import store
 from debrisest.results.open import find_results
 from debrisest.results.overview import overview
 from debrisest.results.sealed import read_image, read_label, sealed
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.document import parse, text_of
 from debrisest.scenario.load import LoadedScenario, load_scenario

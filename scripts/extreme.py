@@ -25,7 +25,8 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent))
 
 from debrisest.errors import UserError  # noqa: E402
-from debrisest.runner.plan import Selection, plan  # noqa: E402
+from debrisest.runner.plan import plan  # noqa: E402
+from debrisest.runner.selection import Selection  # noqa: E402
 from debrisest.runner.sweep import Machine, bring_up_to_date  # noqa: E402
 from debrisest.scenario.document import KeyPath, parse, text_of  # noqa: E402
 from debrisest.scenario.load import load_scenario  # noqa: E402

@@ -16,7 +16,8 @@ from debrisest.parts.starts.first_samples import FirstSamples
 from debrisest.problems.tumbling.attitude import TumblingAttitude
 from debrisest.results import store
 from debrisest.runner.compute import _attributes
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.runner.stages import assess
 from debrisest.scenario.load import load_scenario
 

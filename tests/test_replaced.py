@@ -11,7 +11,8 @@ from debrisest.errors import UserError
 from debrisest.results import store
 from debrisest.results.open import find_results, open_results
 from debrisest.results.status import up_to_date
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.scenario.load import load_scenario
 
 ONE = ("--case", "slow", "--estimator", "triad")

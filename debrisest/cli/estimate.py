@@ -51,7 +51,7 @@ def estimate(
 
     The scenario that is written with it does the same through sweep.
     """
-    from debrisest.runner.plan import Selection
+    from debrisest.runner.selection import Selection
     from debrisest.runner.sweep import Machine
 
     options = {
@@ -120,7 +120,8 @@ def _tell(scenario: "LoadedScenario", folder: Path) -> None:
     """Write estimates and figures, and print the answer and the files in which it stands."""
     from debrisest.results.open import find_results
     from debrisest.results.status import up_to_date
-    from debrisest.runner.plan import Selection, plan
+    from debrisest.runner.plan import plan
+    from debrisest.runner.selection import Selection
     from debrisest.show.answer import answer
     from debrisest.show.estimates import export
     from debrisest.show.plots.draw import draw_all

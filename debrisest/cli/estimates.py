@@ -22,7 +22,7 @@ from debrisest.cli.options import (
 
 if TYPE_CHECKING:
     from debrisest.results.results import Results
-    from debrisest.runner.plan import Selection
+    from debrisest.runner.selection import Selection
     from debrisest.scenario.load import LoadedScenario
 
 
@@ -98,7 +98,9 @@ def current_estimates(scenario: "LoadedScenario", out: Path, selection: "Selecti
     from debrisest.results.address import STAGES
     from debrisest.results.open import find_results
     from debrisest.results.status import up_to_date
-    from debrisest.runner.plan import Selection, Step, plan
+    from debrisest.runner.plan import plan
+    from debrisest.runner.selection import Selection
+    from debrisest.runner.step import Step
 
     there = find_results(out / scenario.name)
     files: dict[Path, Step] = {}

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from debrisest.runner.plan import Selection
+    from debrisest.runner.selection import Selection
     from debrisest.scenario.load import LoadedScenario
 
 
@@ -82,7 +82,7 @@ def select(
     force: bool = False,
 ) -> "Selection":
     """Return what is asked for, or raise UserError where no scenario has it."""
-    from debrisest.runner.plan import Selection, check_selection
+    from debrisest.runner.selection import Selection, check_selection
 
     selection = Selection(runs, cases or None, estimators or None, last_stage, force)
     check_selection(scenarios, selection)

@@ -223,7 +223,8 @@ def _run(scenario: "LoadedScenario", folder: Path, force: bool, quiet: bool) -> 
     """Bring the stages up to date, in this process, and return what they found."""
     from debrisest.results.open import find_results
     from debrisest.results.status import up_to_date
-    from debrisest.runner.plan import Selection, plan
+    from debrisest.runner.plan import plan
+    from debrisest.runner.selection import Selection
     from debrisest.runner.sweep import Machine
 
     machine = Machine(jobs=1, quiet=quiet)
@@ -239,7 +240,8 @@ def _files(scenario: "LoadedScenario", folder: Path, data: "Data") -> list[Path]
 
     from debrisest.reconstruction.mesh_data import body_mesh, start_table
     from debrisest.reconstruction.mesh_files import write_mesh
-    from debrisest.runner.plan import Selection, plan
+    from debrisest.runner.plan import plan
+    from debrisest.runner.selection import Selection
     from debrisest.show.plots.draw import draw_all
 
     paths = []

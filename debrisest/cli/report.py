@@ -25,7 +25,7 @@ from debrisest.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from debrisest.runner.plan import Selection
+    from debrisest.runner.selection import Selection
     from debrisest.scenario.load import LoadedScenario
     from debrisest.show.report.chapter import Chapter
 
@@ -123,7 +123,8 @@ def _chapter(
     from debrisest.results.address import STAGES
     from debrisest.results.open import find_results
     from debrisest.results.status import up_to_date
-    from debrisest.runner.plan import Selection, plan
+    from debrisest.runner.plan import plan
+    from debrisest.runner.selection import Selection
     from debrisest.show.report.chapter import chapter
     from debrisest.show.report.figures import pictures
     from debrisest.show.tables.tabulate import chosen, read_by_tables, tabulate

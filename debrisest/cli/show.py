@@ -49,7 +49,7 @@ FigureFormats = Annotated[
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-    from debrisest.runner.plan import Selection
+    from debrisest.runner.selection import Selection
     from debrisest.scenario.load import LoadedScenario
 
 
@@ -166,7 +166,8 @@ def show_tables(
 
     They are printed too where they cannot be written, which then raises OSError.
     """
-    from debrisest.runner.plan import Selection, plan
+    from debrisest.runner.plan import plan
+    from debrisest.runner.selection import Selection
     from debrisest.show.tables.cells import unexpected
     from debrisest.show.tables.render import render_all
     from debrisest.show.tables.tabulate import chosen, read_by_tables, tabulate, write_tables

@@ -34,7 +34,7 @@ from debrisest.cli.report import write_report
 from debrisest.cli.show import show_tables
 
 if TYPE_CHECKING:
-    from debrisest.runner.plan import Selection
+    from debrisest.runner.selection import Selection
     from debrisest.runner.sweep import Machine
     from debrisest.scenario.load import LoadedScenario
 

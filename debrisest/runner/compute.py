@@ -18,9 +18,9 @@ from debrisest.counted import within
 from debrisest.results import store
 from debrisest.results.image import as_stored
 from debrisest.results.trajectories import thinned
-from debrisest.runner.plan import Step
 from debrisest.runner.stages.isolate import isolate
 from debrisest.runner.stages.pipeline import STAGES
+from debrisest.runner.step import Step
 from debrisest.scenario.resolved import resolved
 from debrisest.vocabulary import VOCABULARY, has_runs
 

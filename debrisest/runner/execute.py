@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from debrisest.errors import NO_MEMORY, UserError, refused
 from debrisest.runner.compute import compute
-from debrisest.runner.plan import Step
 from debrisest.runner.schedule import Schedule
+from debrisest.runner.step import Step
 
 _ENDING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EAGAIN)
 """Where no other step could write its file either, or be computed."""

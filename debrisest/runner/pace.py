@@ -7,7 +7,7 @@ from typing import Any
 from debrisest.results import store
 from debrisest.results.address import Address
 from debrisest.results.chunk import Chunk
-from debrisest.runner.plan import Step
+from debrisest.runner.step import Step
 
 
 class Pace:

@@ -9,69 +9,16 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from debrisest.errors import UserError, allowed_names
 from debrisest.results import store
 from debrisest.results.address import Address
-from debrisest.results.assessed import SIMULATED
-from debrisest.results.status import Wanted, out_of_date
+from debrisest.results.status import out_of_date
+from debrisest.runner.selection import Selection
 from debrisest.runner.stages.pipeline import STAGES, stages_of
+from debrisest.runner.step import RUNS_PER_FILE, Step
 from debrisest.runner.taken_over import same_file, variants_beside
 from debrisest.scenario.case import Case
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.resolved import resolved
-from debrisest.scenario.schema import MOST_RUNS
-
-RUNS_PER_FILE = 20
-
-
-@dataclass(frozen=True, kw_only=True)
-class Step(Wanted):
-    """One stage of one chunk of runs: reads its upstream files, writes its own."""
-
-    case: Case
-    upstream: tuple["Step", ...]
-    then: "Step | None" = None
-    """The step that is computed with this one: it needs trajectories that are not all kept."""
-    computed_before: bool = False
-    """Whether it is such a step, of which nothing is left to do when its turn comes."""
-    same: Path | None = None
-    """The file of another variant that is the same, to be linked in the place of a computation."""
-
-    @property
-    def is_due(self) -> bool:
-        """Return whether it has to be computed."""
-        return bool(self.reason) and self.same is None
-
-    @property
-    def kin(self) -> tuple[str, ...]:
-        """Return what steps have in common that differ in their runs alone."""
-        return self.address[:-1]
-
-    @property
-    def together(self) -> int:
-        """Return how many of them are best computed in one call."""
-        runs = STAGES[self.address.stage].runs_together(self.case, self.address.estimator)
-        return max(1, runs // RUNS_PER_FILE)
-
-
-@dataclass(frozen=True)
-class Selection:
-    """Which part of a scenario is asked for; None is all."""
-
-    runs: int | None = None
-    cases: Sequence[str] | None = None
-    estimators: Sequence[str] | None = None
-    last_stage: str = "assess"
-    force: bool = False
-    again: Container[Address] = ()
-    """Files that are computed anew although they may be up to date."""
-
-    def asks_for(self, case: str, estimator: str, means: Container[str]) -> bool:
-        """Return whether a cell belongs to it; means belong to a selection of all cases."""
-        case_fits = self.cases is None or (case in self.cases and case not in means)
-        if estimator == SIMULATED or self.estimators is None:
-            return case_fits
-        return case_fits and estimator in self.estimators
 
 
 def plan(
@@ -109,23 +56,6 @@ def _once(steps: Sequence[Step]) -> list[Step]:
     for step in steps:
         found[step.path] = max(found.get(step.path, step), step, key=lambda one: one.runs)
     return list(found.values())
-
-
-def check_selection(scenarios: Sequence[LoadedScenario], selection: Selection) -> None:
-    """Raise UserError for a name that is asked for and that no scenario has."""
-    cases = [name for scenario in scenarios for name in scenario.cases]
-    estimators = [name for scenario in scenarios for name in scenario.common.estimators]
-    asked = (("case", selection.cases, cases), ("estimator", selection.estimators, estimators))
-    problems = [
-        f"--{what} {name}: unknown {what}; {allowed_names(name, dict.fromkeys(known))}"
-        for what, names, known in asked
-        for name in names or []
-        if name not in known
-    ]
-    if selection.runs is not None and not 1 <= selection.runs <= MOST_RUNS:
-        problems.append(f"--runs {selection.runs}: from 1 to {MOST_RUNS} are possible")
-    if problems:
-        raise UserError(problems)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Protocol
 
 from debrisest.counted import Part
-from debrisest.runner.plan import Step
+from debrisest.runner.step import Step
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars

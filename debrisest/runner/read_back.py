@@ -3,7 +3,7 @@
 import time
 
 from debrisest.results import store
-from debrisest.runner.plan import Step
+from debrisest.runner.step import Step
 
 PATIENCE_S = 10.0
 """How long a shared disk may take to show a file."""

@@ -16,7 +16,9 @@ from debrisest.results import store
 from debrisest.results.address import Address
 from debrisest.results.status import out_of_date
 from debrisest.runner.compute import compute
-from debrisest.runner.plan import Selection, Step, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
+from debrisest.runner.step import Step
 from debrisest.scenario.load import load_scenario
 
 _NEEDED = ("scenario", "first_run", "runs", "estimator", "plugins")

@@ -3,7 +3,7 @@
 from collections.abc import Hashable, Iterable
 from heapq import heappop, heappush
 
-from debrisest.runner.plan import Step
+from debrisest.runner.step import Step
 
 
 class Schedule:

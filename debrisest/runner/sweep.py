@@ -15,9 +15,11 @@ from debrisest.results.open import find_results
 from debrisest.runner.execute import execute, trusted
 from debrisest.runner.executors import executor, require_guarded
 from debrisest.runner.pace import Pace
-from debrisest.runner.plan import Selection, Step, plan
+from debrisest.runner.plan import plan
 from debrisest.runner.progress import Progress, progress
 from debrisest.runner.read_back import not_read_back
+from debrisest.runner.selection import Selection
+from debrisest.runner.step import Step
 from debrisest.runner.taken_over import take_over
 from debrisest.scenario.load import LoadedScenario
 

@@ -7,15 +7,12 @@ from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from debrisest.files import replacing
 from debrisest.results import store
 from debrisest.results.status import Wanted, out_of_date
+from debrisest.runner.step import Step
 from debrisest.scenario.names import VARIANT
-
-if TYPE_CHECKING:
-    from debrisest.runner.plan import Step
 
 _TABLES = re.compile(r"^tables:.*?(?=^\w|\Z)", re.M | re.S)
 
@@ -50,7 +47,7 @@ def _tables(scenario: str) -> str:
     return found[0] if found else ""
 
 
-def take_over(steps: Iterable["Step"]) -> Iterator["Step"]:
+def take_over(steps: Iterable[Step]) -> Iterator[Step]:
     """Link the files that another folder has, whole or not at all; yield what is left to do."""
     for step in steps:
         if step.same is None:

@@ -13,7 +13,8 @@ from debrisest.errors import UserError
 from debrisest.plugins.load import load_plugins, read_plugins
 from debrisest.results import store
 from debrisest.runner.compute import compute
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.scenario.load import load_scenario
 
 

@@ -11,7 +11,8 @@ from debrisest.recovery.basis_pursuit import RecoveryStatus
 from debrisest.results.open import find_results
 from debrisest.results.overview import Row, overview
 from debrisest.results.status import up_to_date
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.scenario.load import load_scenario
 
 LIMIT = f"recover: {RecoveryStatus.ITERATION_LIMIT.sentence}"

@@ -11,7 +11,8 @@ from debrisest.results.image import as_stored, opened
 from debrisest.results.open import open_results
 from debrisest.results.trajectories import is_trajectory
 from debrisest.results.written import image_of
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.scenario.load import load_scenario
 from debrisest.vocabulary import VOCABULARY
 

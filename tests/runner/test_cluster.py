@@ -16,7 +16,8 @@ from debrisest.errors import UserError
 from debrisest.fingerprint import fingerprint
 from debrisest.runner import cluster, read_back
 from debrisest.runner.executors import InProcess
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.load import load_scenario
 

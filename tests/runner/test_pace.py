@@ -9,7 +9,9 @@ from debrisest.results.address import Address
 from debrisest.results.chunk import Chunk
 from debrisest.runner import pace as pacing
 from debrisest.runner.pace import Pace
-from debrisest.runner.plan import Selection, Step, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
+from debrisest.runner.step import Step
 from debrisest.scenario.load import load_scenario
 
 

@@ -9,7 +9,8 @@ from rich.progress import Progress as Bars
 from rich.progress import TextColumn
 
 from debrisest.runner import progress as telling
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.scenario.load import load_scenario
 
 

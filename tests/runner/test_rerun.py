@@ -7,7 +7,8 @@ import pytest
 import yaml
 
 from debrisest.results import store
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.scenario.case import Case
 from debrisest.scenario.load import load_scenario
 from debrisest.scenario.resolved import resolved

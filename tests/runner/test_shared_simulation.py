@@ -9,7 +9,8 @@ import pytest
 from debrisest.errors import UserError
 from debrisest.results.open import find_results
 from debrisest.runner import sweep as sweeping
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.scenario.load import load_scenario
 
 NOISES = [round(1e-4 * 1.1**index, 8) for index in range(20)]

@@ -9,8 +9,10 @@ import pytest
 from debrisest.arrays import Data
 from debrisest.results import store
 from debrisest.runner.compute import compute
-from debrisest.runner.plan import Selection, Step, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.runner.stages.pipeline import STAGES, stages_of
+from debrisest.runner.step import Step
 from debrisest.scenario.case import Case
 from debrisest.scenario.load import load_scenario
 from debrisest.shipped import shipped_path

@@ -6,7 +6,8 @@ import pytest
 
 from debrisest.catalog import CATALOG, kind_of
 from debrisest.results import store
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.scenario.resolved import resolved

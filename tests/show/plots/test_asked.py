@@ -8,7 +8,8 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from debrisest.results.open import open_results
-from debrisest.runner.plan import Selection, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
 from debrisest.scenario.load import load_scenario
 from debrisest.show.plots.draw import Asked, sources
 from debrisest.show.plots.tumble import FRAMES, places

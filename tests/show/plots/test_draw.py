@@ -17,7 +17,9 @@ from debrisest.results.open import find_results
 from debrisest.results.results import Results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.runner.compute import _attributes
-from debrisest.runner.plan import Selection, Step, plan
+from debrisest.runner.plan import plan
+from debrisest.runner.selection import Selection
+from debrisest.runner.step import Step
 from debrisest.scenario.load import LoadedScenario, load_scenario
 from debrisest.show.plots.draw import draw_all
 from debrisest.show.plots.gather import all_runs, single_runs
