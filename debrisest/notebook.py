@@ -24,7 +24,8 @@ from debrisest.runner.selection import Selection, check_selection
 from debrisest.runner.sweep import Machine, bring_up_to_date
 from debrisest.scenario.described import described
 from debrisest.scenario.load import LoadedScenario, load_scenario
-from debrisest.scenario.schema import ScenarioFile, scenario_model
+from debrisest.scenario.models import scenario_model
+from debrisest.scenario.schema import ScenarioFile
 from debrisest.scenario.variant import variant_called
 from debrisest.shipped import scenario_path
 from debrisest.show.tables.published import check_published

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from debrisest.scenario.schema import ScenarioFile, scenario_model
+from debrisest.scenario.models import scenario_model
+from debrisest.scenario.schema import ScenarioFile
 
 GUIDE = Path(__file__).parent.parent / "docs" / "scenario.md"
 HEAD = ("| key | value | default | meaning |", "|---|---|---|---|")

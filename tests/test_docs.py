@@ -15,7 +15,8 @@ from debrisest.runner.stages.pipeline import STAGES
 from debrisest.runner.step import RUNS_PER_FILE
 from debrisest.scenario.document import merge, parse
 from debrisest.scenario.load import load_scenario
-from debrisest.scenario.schema import ScenarioFile, scenario_model
+from debrisest.scenario.models import scenario_model
+from debrisest.scenario.schema import ScenarioFile
 from debrisest.show.tables.cells import COLUMNS
 from debrisest.show.tables.verdict import SYMBOLS, Verdict
 from debrisest.vocabulary import VOCABULARY, axes_of

@@ -22,8 +22,8 @@ from debrisest.roles import SourcePart
 from debrisest.scenario.document import Document
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.mistakes import validated
+from debrisest.scenario.models import measured_model
 from debrisest.scenario.names import check_path
-from debrisest.scenario.schema import measured_model
 from debrisest.tracks.recognise import Kind, recognise
 
 _PARTS: dict[Kind, type[FromFile]] = {

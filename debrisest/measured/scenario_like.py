@@ -18,7 +18,7 @@ from debrisest.scenario.document import Document
 from debrisest.scenario.load import NOMINAL, LoadedScenario
 from debrisest.scenario.measured import told_by_data
 from debrisest.scenario.mistakes import validated
-from debrisest.scenario.schema import scenario_model
+from debrisest.scenario.models import scenario_model
 from debrisest.tracks.types import BodyPoints
 
 

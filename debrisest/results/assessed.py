@@ -9,7 +9,7 @@ from debrisest.arrays import Array, BoolArray, Data
 from debrisest.assessment.consistency import dof_of_runs
 from debrisest.assessment.statistics import per_run, window_mask
 from debrisest.results.results import Results
-from debrisest.scenario.schema import Divergence
+from debrisest.scenario.table_keys import Divergence
 from debrisest.scenario.window import window_of
 from debrisest.vocabulary import VOCABULARY, table_scale
 

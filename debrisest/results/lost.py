@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.results.address import Address
 from debrisest.results.assessed import assessed
 from debrisest.results.results import Results
-from debrisest.scenario.schema import Divergence
+from debrisest.scenario.table_keys import Divergence
 
 
 def lost(results: Results, rules: Iterable[Divergence]) -> set[Address]:

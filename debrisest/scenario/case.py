@@ -11,7 +11,8 @@ from debrisest.arrays import Data, IntArray
 from debrisest.clock import Clock
 from debrisest.plugins.load import Plugin, load_plugins
 from debrisest.roles import SourcePart
-from debrisest.scenario.schema import Scenario, scenario_model
+from debrisest.scenario.models import scenario_model
+from debrisest.scenario.schema import Scenario
 from debrisest.vocabulary import has_runs
 
 

@@ -15,7 +15,8 @@ from debrisest.scenario.contracts import Found, parts_that_do_not_fit
 from debrisest.scenario.document import KeyPath
 from debrisest.scenario.kept import kept_too_late, not_kept
 from debrisest.scenario.names import same_on_disk
-from debrisest.scenario.schema import Scenario, Table
+from debrisest.scenario.schema import Scenario
+from debrisest.scenario.table_keys import Table
 from debrisest.scenario.window import window_of
 from debrisest.vocabulary import VOCABULARY
 

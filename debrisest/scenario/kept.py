@@ -7,7 +7,7 @@ from debrisest.parts.filters.kalman import kept_epochs
 from debrisest.roles import FilterPart
 from debrisest.scenario.case import Case
 from debrisest.scenario.document import KeyPath
-from debrisest.scenario.schema import Table
+from debrisest.scenario.table_keys import Table
 from debrisest.scenario.window import window_of
 from debrisest.vocabulary import WHERE_KEPT
 

@@ -28,8 +28,9 @@ from debrisest.scenario.grid import points
 from debrisest.scenario.limits import extreme_numbers
 from debrisest.scenario.measured import told_by_data
 from debrisest.scenario.mistakes import NAMED, validated
+from debrisest.scenario.models import scenario_model
 from debrisest.scenario.names import VARIANT, case_name_problems, check_scenario_name
-from debrisest.scenario.schema import CasesAndGrid, Scenario, scenario_model
+from debrisest.scenario.schema import CasesAndGrid, Scenario
 
 MOST_CASES = 50_000
 NOMINAL = "nominal"

@@ -6,8 +6,9 @@ from debrisest.clock import Clock
 from debrisest.errors import UserError
 from debrisest.scenario.document import Document, Problem
 from debrisest.scenario.mistakes import validated
+from debrisest.scenario.models import measured_model
 from debrisest.scenario.names import check_path
-from debrisest.scenario.schema import SIMULATED, measured_model
+from debrisest.scenario.schema import SIMULATED
 
 
 def told_by_data(document: Document, folder: Path) -> tuple[Document, list[Problem]]:

@@ -10,7 +10,8 @@ from typing import Any
 from debrisest.scenario.case import Case
 from debrisest.scenario.checks import table_problems
 from debrisest.scenario.document import merge_values, text_of
-from debrisest.scenario.schema import SIMULATED, Table
+from debrisest.scenario.schema import SIMULATED
+from debrisest.scenario.table_keys import Table
 
 
 def resolved(case: Case) -> str:

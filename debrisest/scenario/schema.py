@@ -1,28 +1,13 @@
-"""What a scenario file may hold. The kinds come from the catalog."""
+"""What a scenario file may hold, but for the kinds of its parts."""
 
-from collections import Counter
-from collections.abc import Sequence
-from functools import cache, reduce
-from operator import or_
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal
 
-from pydantic import (
-    AfterValidator,
-    Field,
-    ValidationInfo,
-    create_model,
-    field_validator,
-    model_validator,
-)
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from debrisest.assessment.statistics import STATISTICS
-from debrisest.catalog import CATALOG, kind_of
 from debrisest.clock import Clock
-from debrisest.errors import allowed_names
 from debrisest.roles import (
     FilterPart,
     Keys,
-    Part,
     Positive,
     ProblemPart,
     RecoveryPart,
@@ -31,117 +16,9 @@ from debrisest.roles import (
     StartPart,
     Window,
 )
-from debrisest.scenario.names import CaseName, Line, PartName, TableName
-from debrisest.scenario.window import WindowText, window_of
-from debrisest.vocabulary import VOCABULARY, possible_units
-
-
-def _known_quantity(name: str) -> str:
-    if name not in (shown := _quantities()):
-        raise ValueError(f"no table can show {name!r}; {allowed_names(name, shown)}")
-    return name
-
-
-def _quantities() -> list[str]:
-    return [name for name, entry in VOCABULARY.items() if entry.table_unit]
-
-
-def _known_statistic(name: str) -> str:
-    if name not in STATISTICS:
-        raise ValueError(f"unknown statistic {name!r}; {allowed_names(name, STATISTICS)}")
-    return name
-
-
-QuantityName = Annotated[
-    str,
-    AfterValidator(_known_quantity),
-    Field(json_schema_extra=lambda schema: schema.update(enum=_quantities())),
-]
-StatisticName = Annotated[
-    str, AfterValidator(_known_statistic), Field(json_schema_extra={"enum": [*STATISTICS]})
-]
-
-
-def _distinct(names: list[str]) -> list[str]:
-    for name, times in Counter(names).items():
-        if times > 1:
-            raise ValueError(f"{name!r} is there {times} times")
-    return names
-
-
-_Text = TypeVar("_Text")
-Distinct = Annotated[
-    list[_Text],
-    Field(min_length=1, json_schema_extra={"uniqueItems": True}),
-    AfterValidator(_distinct),
-]
-"""At least one, and none of them twice, which would count it as two."""
-
-
-class Divergence(Keys):
-    """A run has diverged if a quantity over a window, by default its RMS, is above a limit."""
-
-    quantity: QuantityName
-    """A quantity of the tables."""
-    above: Positive
-    """The limit, in the unit of the tables."""
-    window: WindowText
-    """A window."""
-    statistic: StatisticName = "rms"
-    """A statistic, of which the figure per run is used."""
-
-
-class Table(Keys):
-    """Cells: every quantity by every statistic and window, for each case and estimator.
-
-    What was simulated has no estimator.
-    """
-
-    table: TableName
-    """The paper's number, or a short word; several tables may share it."""
-    title: Line
-    """Its heading."""
-    stage: Literal["simulate", "recover", "filter"]
-    """Whose errors: those of the recovery or those of the filter; or figures of what was
-    simulated."""
-    quantities: Distinct[QuantityName]
-    """Quantities."""
-    statistics: Distinct[StatisticName]
-    """Statistics."""
-    windows: Distinct[WindowText]
-    """Windows."""
-    cases: list[str] | None = None
-    """Cases and means that the table shows; none: all."""
-    units: dict[QuantityName, str] = {}
-    """Another unit than the quantity's own, such as `position: km`."""
-    count_diverged: bool = False
-    """Runs that diverged count as well, as far as they are finite."""
-
-    @model_validator(mode="after")
-    def _known_units(self) -> "Table":
-        for name, unit in self.units.items():
-            allowed = possible_units(name)
-            if unit not in allowed:
-                raise ValueError(
-                    f"{name} cannot be shown in {unit!r}; {allowed_names(unit, allowed)}"
-                )
-        return self
-
-
-class Tables(Keys):
-    """How results are scored and laid out."""
-
-    published: str | None = None
-    """CSV of published values, relative to the scenario file."""
-    scored_window: WindowText | None = None
-    """Epochs by which a run's estimated principal axes are matched with the true ones; none: the
-    last third."""
-    diverged: list[Divergence] = []
-    """Which runs count as diverged."""
-    means: dict[CaseName, Annotated[list[str], AfterValidator(_distinct)]] = {}
-    """Means over cases: a name that no case has, and its cases."""
-    layout: list[Table] = []
-    """The tables."""
+from debrisest.scenario.names import CaseName, Line, PartName
+from debrisest.scenario.table_keys import Tables
+from debrisest.scenario.window import window_of
 
 
 class Estimator(Keys):
@@ -291,54 +168,3 @@ class CasesAndGrid(Keys):
 
 class ScenarioFile(CasesAndGrid, Scenario):
     """A scenario file: a scenario, and its cases or a grid that makes them."""
-
-
-def scenario_model(base: type[Scenario] = Scenario) -> Any:
-    """Return the scenario's model with the catalog's kinds in their places."""
-    return _scenario_model(base, _catalog())
-
-
-def measured_model() -> Any:
-    """Return the model of `measured` alone, with the catalog's kinds."""
-    return _measured_model(_catalog())
-
-
-def _catalog() -> tuple[tuple[type[Part], ...], ...]:
-    """Return what the models are made of: they are made anew where a plug-in changes it."""
-    return tuple(map(tuple, CATALOG.values()))
-
-
-@cache
-def _scenario_model(base: type[Scenario], _: Any) -> Any:
-    estimator = _filled(Estimator, _optional("recovery", "problem", "start", "filter"))
-    named = {role: _by_name(_kinds(role)) for role in ("observers", "sensors", "starts")}
-    alone = _optional("target", "orbit", "motion", "measured")
-    return _filled(base, alone | named | {"estimators": _by_name(estimator)})
-
-
-@cache
-def _measured_model(_: Any) -> Any:
-    return _filled(Measured, {"measured": _kinds("measured")})
-
-
-def _filled(base: type[Keys], kinds: dict[str, Any]) -> Any:
-    """Return a model with what some of its keys may hold, which say the same and default so."""
-    places = {name: (value, base.model_fields[name]) for name, value in kinds.items()}
-    create: Any = create_model
-    return create(base.__name__, __base__=base, __doc__=base.__doc__, **places)
-
-
-def _optional(*roles: str) -> dict[str, Any]:
-    return {role: _kinds(role) | None for role in roles}
-
-
-def _by_name(value: Any) -> Any:
-    return dict[PartName, value]
-
-
-def _kinds(role: str) -> Any:
-    parts: Sequence[Any] = CATALOG[role]
-    if len({kind_of(part) for part in parts}) != len(parts):
-        raise ValueError(f"the catalog has two parts of one kind in {role!r}")
-    union = reduce(or_, parts)
-    return Annotated[union, Field(discriminator="kind")] if len(parts) > 1 else union

@@ -10,7 +10,7 @@ import pandas as pd
 from debrisest.arrays import Array
 from debrisest.assessment.paired import FEWEST, difference
 from debrisest.results.assessed import SIMULATED, Result
-from debrisest.scenario.schema import Table
+from debrisest.scenario.table_keys import Table
 from debrisest.show.compare.sides import Comparison, Pairing
 from debrisest.show.tables.figures import dataset_of, figures, keys_of, unit_of
 from debrisest.show.tables.published import CellKey

@@ -14,7 +14,7 @@ from debrisest.results.chunk import Chunk
 from debrisest.results.open import open_results
 from debrisest.results.results import Results
 from debrisest.scenario.schema import SIMULATED as OF_SIMULATION
-from debrisest.scenario.schema import Tables
+from debrisest.scenario.table_keys import Tables
 
 _OF_DATA = (*(key for key in OF_SIMULATION if key != "runs"), "starts", "measured")
 

@@ -11,7 +11,7 @@ from debrisest.assessment.consistency import consistent_interval
 from debrisest.assessment.intervals import with_interval
 from debrisest.results.assessed import SIMULATED, Assessed, Result
 from debrisest.scenario.load import LoadedScenario
-from debrisest.scenario.schema import Table, Tables
+from debrisest.scenario.table_keys import Table, Tables
 from debrisest.show.tables.figures import dataset_of, figures, keys_of, unit_of
 from debrisest.show.tables.published import CellKey, Published, published_values
 from debrisest.show.tables.verdict import (

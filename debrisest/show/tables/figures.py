@@ -7,7 +7,7 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray
 from debrisest.results.assessed import SIMULATED, Result
-from debrisest.scenario.schema import Table, Tables
+from debrisest.scenario.table_keys import Table, Tables
 from debrisest.show.tables.published import CellKey
 from debrisest.vocabulary import VOCABULARY, table_scale
 

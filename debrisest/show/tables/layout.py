@@ -8,7 +8,7 @@ import pandas as pd
 
 from debrisest.results.assessed import SIMULATED
 from debrisest.scenario.load import LoadedScenario
-from debrisest.scenario.schema import Table
+from debrisest.scenario.table_keys import Table
 from debrisest.show.tables.published import CellKey, derived_values
 from debrisest.show.tables.verdict import CONSISTENCY, SYMBOLS, Verdict
 from debrisest.vocabulary import VOCABULARY
