@@ -39,6 +39,9 @@ QUANTITIES = {
         *(TIME, "1", "normalised error squared per dimension", "1"),
         ChiSquare("nees_dof", white=False),
     ),
+    "square_half_way": Quantity(
+        TIME, "1", "squared error of the motion in sigmas, half way from its first measurement"
+    ),
     "deviation": Quantity(TIME, "1", "largest error of a single number over its sigma", "1"),
     "nees_dof": Quantity(TIME, "1", "errors that it counts, where the covariance was kept"),
     "w": Quantity(
