@@ -29,9 +29,19 @@ QUANTITIES = {
     "doubt": Quantity(
         RUN, "1", "0 consistent, 1 errors may be larger than stated, 2 ambiguous, 3 lost", "1"
     ),
+    "doubt_at": Quantity(
+        TIME,
+        "1",
+        "the same of an epoch whose covariance was kept, by what is known at the end",
+        "1",
+    ),
     "doubtful": Quantity(RUN, "1", "the run does not call itself consistent", "1"),
     "silent_failure": Quantity(
         RUN, "1", "beyond five sigma at the end, and calls itself consistent", "1"
+    ),
+    "doubtful_at": Quantity(TIME, "1", "the run does not call its estimate consistent", "1"),
+    "silent_failure_at": Quantity(
+        TIME, "1", "the estimate is beyond five sigma, and the run calls it consistent", "1"
     ),
     "fit": Quantity(RUN, "1", "cost of the batch per degree of freedom", "1"),
     "repairs": Quantity(RUN, "1", "covariance repairs", "1"),

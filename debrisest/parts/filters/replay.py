@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from debrisest.filters.estimates import Estimates
+from debrisest.filters.replay.hindsight import with_hindsight
 from debrisest.filters.replay.replay import RATIO, replay, smooth
 from debrisest.filters.replay.self_tests import self_tests
 from debrisest.filters.replay.valley import with_bends
@@ -42,4 +43,5 @@ class Replay(FilterPart):
         found = with_bends(model, *known, found, self.gate, self.smoother, given.truth)
         converged = found.status == ReplayStatus.CONVERGED.sentence
         tests = self_tests(model, *known, found, self.gate)
-        return told(found._replace(counts=found.counts | {"converged": converged}), tests)
+        found = told(found._replace(counts=found.counts | {"converged": converged}), tests)
+        return found if self.smoother else with_hindsight(model, found)
