@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from debrisest.arrays import IntArray
 from debrisest.filters.estimates import Estimates, finite
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.rivals import DECISIVE
@@ -22,13 +23,19 @@ def with_hindsight(model: ReplayModel, found: Estimates) -> Estimates:
     code = np.full(found.sigma.shape[:2], np.nan)
     code[:, found.kept] = doubt[:, None]
     runs = np.flatnonzero(finite(found.state[:, last], found.covariance[:, -1]))
-    part = model.of(runs)
-    with np.errstate(all="ignore"):
-        motion = part.shown(part.rewind(found.state[runs, last], last), last)[0]
-        for k in found.kept:
-            off = np.abs(part.plain_difference(motion[:, k], found.state[runs, k]))
-            wrong = (off > _SIGMAS * found.sigma[runs, k]).any(-1)
-            open_ = found.counts["rival_excess"][runs, k] < DECISIVE
-            own = np.where(open_, Verdict.AMBIGUOUS, np.where(wrong, Verdict.LARGER, 0))
-            code[runs, k] = np.maximum(code[runs, k], own)
+    if len(runs):
+        some = np.ix_(runs, found.kept)
+        code[some] = np.maximum(code[some], _passed(model.of(runs), found, runs, last))
     return found._replace(counts=found.counts | {"doubt_at": code})
+
+
+def _passed(model: ReplayModel, found: Estimates, runs: IntArray, last: int) -> IntArray:
+    """Codes (run, kept) of some runs, by the motion that they end with."""
+    some = np.ix_(runs, found.kept)
+    with np.errstate(all="ignore"):
+        motion = model.shown(model.rewind(found.state[runs, last], last), last)[0]
+        off = np.abs(model.plain_difference(motion[:, found.kept], found.state[some]))
+    wrong = (off > _SIGMAS * found.sigma[some]).any(-1)
+    undecided = found.counts["rival_excess"][some] < DECISIVE
+    code = np.where(undecided, Verdict.AMBIGUOUS, wrong * Verdict.LARGER)
+    return np.asarray(code, dtype=np.int64)
