@@ -12,7 +12,7 @@ import yaml
 
 from debrisest.results import store
 from debrisest.scenario.document import parse
-from debrisest.show.estimates import COLUMNS
+from debrisest.show.estimates import COLUMNS, _said
 
 # scenario: a case, an estimator, a short duration, and a quantity with its unit and scale
 EVERY_PROBLEM = {
@@ -81,6 +81,16 @@ def test_another_run_and_epoch(swept: Path, small: Path, cli: Callable) -> None:
     assert set(shown["time_s"]) == {30.0}
     printed = cli("estimates", small, "--out", swept, *asked).stdout
     assert "Estimates: small slow, triad, run 2, at 30 s\nconsistent\n" in printed
+
+
+def test_an_epoch_on_the_way_has_a_word_of_its_own() -> None:
+    data = {"status": np.array(["consistent", "lost: nothing fits"]), "doubt": np.array([0, 3])}
+    assert _said(data, 0, 1) == "consistent"
+    data["doubt_at"] = np.array([[np.nan, 2.0, 0.0], [np.nan, 3.0, 3.0]])
+    said = [_said(data, 0, epoch) for epoch in range(3)]
+    assert said[0] == said[2] == "consistent"
+    assert said[1] == "ambiguous, by what is known at the end; there: consistent"
+    assert _said(data, 1, 1) == "lost: nothing fits"
 
 
 @pytest.mark.parametrize(

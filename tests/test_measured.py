@@ -109,7 +109,7 @@ def test_the_estimates_are_those_of_the_simulation(
         for key, values in found.items():
             if values.dtype.kind == "f":
                 np.testing.assert_allclose(values, expected[key], rtol=1e-12, atol=1e-12)
-        assert expected.keys() - found.keys() <= {"failure", "cost_of_truth"}
+        assert expected.keys() - found.keys() <= {"failure", "cost_of_truth", "square_half_way"}
         assessed = store.read(results / f"assess-{name}.000000.h5")
         assert assessed.keys() & {"nis", "position_spread"}
         assert not assessed.keys() & {"rate", "position", "attitude", "nees"}

@@ -11,12 +11,13 @@ import pandas as pd
 from debrisest.arrays import Data
 from debrisest.errors import UserError
 from debrisest.files import replacing
+from debrisest.filters.verdict import Verdict
 from debrisest.results.results import Results
 from debrisest.vocabulary import VOCABULARY, shown_unit, table_scale
 
 OF_ROW = ("time_s", "quantity", "component", "value", "sigma", "unit")
 COLUMNS = ("case", "estimator", "run", *OF_ROW)
-_OF_RUN = ("run", "time_s", "status", "failure")
+_OF_RUN = ("run", "time_s", "status", "failure", "doubt", "doubt_at")
 
 
 class Estimate(NamedTuple):
@@ -28,7 +29,7 @@ class Estimate(NamedTuple):
     time: float
     """Of the epoch, s."""
     status: str
-    """How the filter ended, or why the run gave no result."""
+    """What is said of the estimate, how the filter ended, or why the run gave no result."""
     rows: pd.DataFrame
     """With the columns `OF_ROW`; empty where the run failed."""
 
@@ -52,9 +53,18 @@ def estimates_at(results: Results, run: int = 0, time: float = np.inf) -> Iterat
             raise UserError(f"--at {time:g}: {results.not_kept(case, estimator, run)}")
         failure = str(data["failure"][index])
         rows = _of_run(data, index, _features(results, case), slice(epoch, epoch + 1))
-        status = f"failed: {failure}" if failure else str(data["status"][index])
+        status = f"failed: {failure}" if failure else _said(data, index, epoch)
         shown = rows.iloc[:0] if failure else rows
         yield Estimate(case, estimator, run, float(times[epoch]), status, shown)
+
+
+def _said(data: Data, run: int, epoch: int) -> str:
+    """Return the run's status, and the word for an epoch on the way that it trusts less."""
+    status = str(data["status"][run])
+    if "doubt_at" not in data or not data["doubt_at"][run, epoch] > data["doubt"][run]:
+        return status
+    word = list(Verdict)[int(data["doubt_at"][run, epoch])].sentence
+    return f"{word}, by what is known at the end; there: {status}"
 
 
 def export(results: Results, path: Path) -> int:

@@ -104,3 +104,15 @@ def test_one_number_far_beyond_its_sigma_is_a_failure_whatever_the_cost_says() -
     errors = {"w": w, "w_dof": dof, "doubt": np.array([0, 0, 1])}
     errors["deviation"] = np.array([[4.0], [6.0], [6.0]])
     assert silent_failures(errors)["silent_failure"].tolist() == [0.0, 1.0, 0.0]
+
+
+def test_of_each_epoch_the_word_for_that_epoch_counts() -> None:
+    w = np.array([[np.nan, 9.0, 1.0], [np.nan, 9.0, 1.0], [np.nan, 1.0, 9.0]])
+    errors = {"w": w, "w_dof": np.where(np.isnan(w), 0.0, 29.0), "doubt": np.array([0, 0, 0])}
+    errors["doubt_at"] = np.array([[np.nan, 0, 0], [np.nan, 2, 0], [np.nan, 1, 0]])
+    found = silent_failures(errors)
+    nan = np.nan
+    np.testing.assert_array_equal(found["doubtful_at"], [[nan, 0, 0], [nan, 1, 0], [nan, 1, 0]])
+    wanted = [[nan, 1, 0], [nan, 0, 0], [nan, 0, 1]]
+    np.testing.assert_array_equal(found["silent_failure_at"], wanted)
+    assert found["silent_failure"].tolist() == [0.0, 0.0, 1.0]

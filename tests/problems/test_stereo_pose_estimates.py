@@ -6,10 +6,12 @@ import pytest
 from debrisest.assessment.consistency import chart_free
 from debrisest.filters.bound.motion import paired_errors
 from debrisest.filters.replay.gauss_newton import move
+from debrisest.filters.replay.hindsight import with_hindsight
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay, smooth
 from debrisest.filters.replay.valley import with_bends
 from debrisest.filters.status import ReplayStatus
+from debrisest.filters.verdict import Verdict
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
 
@@ -154,3 +156,11 @@ def test_ratios_that_a_spin_does_not_tell_are_not_told_for_certain(experiment):
     assert np.sum(off[:, ratios] / found.sigma[:, -1, ratios] > 5.0) > 2
     assert np.max(off / told.sigma[:, -1]) < 5.0
     assert np.mean((off / told.sigma[:, -1]) ** 2) > 0.6, "sigmas that are too large tell nothing"
+
+
+def test_where_all_runs_are_lost_every_epoch_is(experiment):
+    test = experiment(2, 4, 3)
+    lost = replay(test.model, np.inf * test.prior, test.covariance, test.measured, keep=[1])
+    lost = lost._replace(counts=lost.counts | {"doubt": np.full(2, Verdict.LOST)})
+    code = with_hindsight(test.model, lost).counts["doubt_at"]
+    np.testing.assert_array_equal(code, np.tile([np.nan, 3.0, np.nan, 3.0], (2, 1)))

@@ -15,6 +15,7 @@ from debrisest.arrays import Array, IntArray
 from debrisest.filters import weights
 from debrisest.filters.estimates import Estimates, finite
 from debrisest.filters.replay.floor import errors_per_sigma
+from debrisest.filters.replay.half_way import half_way, joint_square, moved
 from debrisest.filters.replay.measured_arc import MeasuredArc, linearize, measured_arc, residuals
 from debrisest.filters.replay_model import ReplayModel
 
@@ -29,20 +30,26 @@ def with_bends(
     found: Estimates,
     gate: bool = False,
     smoothed: bool = False,
+    truth: Array | None = None,
 ) -> Estimates:
     """Return the estimates, their covariances at the kept epochs widened by what bends.
 
     By what `replay` was given and what it gave, or `smooth` if they are ``smoothed``, each from all
     that it was made of. With `gate`, what its residual rejects is left out. The sigmas of other
     epochs are widened by as much as at the next one that is kept.
+
+    With the ``truth (run, time, n)`` `square_half_way` is counted at the kept epochs: the joint
+    error in sigmas, squared, half way between the first measurement and there.
     """
-    if not model.bending:
+    if not model.bending and truth is None:
         return found
     sigma, spread = found.sigma.copy(), found.covariance.copy()
+    square = np.full(sigma.shape[:2], np.nan)
     last, slots = measured.shape[1] - 1, np.arange(len(found.kept))
     for together in [slots] if smoothed else slots[:, None]:
         kept = found.kept[together]
         end = last if smoothed else int(kept[0])
+        middle = half_way(measured, end)
         runs = np.flatnonzero(finite(found.state[:, end], spread[:, together[-1]]))
         size = max(1, _TOGETHER // (end + 1))
         parts = np.split(runs, range(size, len(runs), size))
@@ -51,10 +58,18 @@ def with_bends(
             arc = measured_arc(part, prior[some], covariance[some], measured[some, : end + 1])
             start = part.rewind(found.state[some, end], end)
             with np.errstate(all="ignore"):
-                for slot, way in zip(together, _ways(part, arc, start, kept.tolist(), gate)):
+                ways = _ways(part, arc, start, [middle, *kept.tolist()], gate)
+                if truth is not None:
+                    own = found.state[some, end], spread[some, together[-1]]
+                    at, wide = moved(part, *own, end, middle)
+                    wide += _added(part, wide, *ways[0])
+                    joint = joint_square(part, at, wide, truth[some, middle])
+                    square[np.ix_(some, kept)] = joint[:, None]
+                for slot, way in zip(together, ways[1:]):
                     more = _added(part, spread[some, slot], *way)
                     _widen(sigma, spread, some, found.kept, slot, more)
-    return found._replace(sigma=sigma, covariance=spread)
+    counts = found.counts | ({} if truth is None else {"square_half_way": square})
+    return found._replace(sigma=sigma, covariance=spread, counts=counts)
 
 
 def _widen(

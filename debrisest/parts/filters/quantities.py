@@ -29,15 +29,28 @@ QUANTITIES = {
     "doubt": Quantity(
         RUN, "1", "0 consistent, 1 errors may be larger than stated, 2 ambiguous, 3 lost", "1"
     ),
+    "doubt_at": Quantity(
+        TIME,
+        "1",
+        "the same of an epoch whose covariance was kept, by what is known at the end",
+        "1",
+    ),
     "doubtful": Quantity(RUN, "1", "the run does not call itself consistent", "1"),
     "silent_failure": Quantity(
         RUN, "1", "beyond five sigma at the end, and calls itself consistent", "1"
+    ),
+    "doubtful_at": Quantity(TIME, "1", "the run does not call its estimate consistent", "1"),
+    "silent_failure_at": Quantity(
+        TIME, "1", "the estimate is beyond five sigma, and the run calls it consistent", "1"
     ),
     "fit": Quantity(RUN, "1", "cost of the batch per degree of freedom", "1"),
     "repairs": Quantity(RUN, "1", "covariance repairs", "1"),
     "nees": Quantity(
         *(TIME, "1", "normalised error squared per dimension", "1"),
         ChiSquare("nees_dof", white=False),
+    ),
+    "square_half_way": Quantity(
+        TIME, "1", "squared error of the motion in sigmas, half way from its first measurement"
     ),
     "deviation": Quantity(TIME, "1", "largest error of a single number over its sigma", "1"),
     "nees_dof": Quantity(TIME, "1", "errors that it counts, where the covariance was kept"),

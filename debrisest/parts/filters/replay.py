@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from debrisest.filters.estimates import Estimates
+from debrisest.filters.replay.hindsight import with_hindsight
 from debrisest.filters.replay.replay import RATIO, replay, smooth
 from debrisest.filters.replay.self_tests import self_tests
 from debrisest.filters.replay.valley import with_bends
@@ -18,7 +19,7 @@ from debrisest.roles import FilterPart, Given
 class Replay(FilterPart):
     """Maximum a posteriori at every epoch of all measurements so far, or of all there are."""
 
-    version = 5
+    version = 6
     takes = "replay_model"
     runs_together = 100
     kind: Literal["replay"]
@@ -39,7 +40,8 @@ class Replay(FilterPart):
         found = replay(model, *known, ratio=self.ratio, gate=self.gate, keep=keep, reference=truth)
         if self.smoother:
             found = smooth(model, *known, found, gate=self.gate, keep=keep, reference=truth)
-        found = with_bends(model, *known, found, self.gate, self.smoother)
+        found = with_bends(model, *known, found, self.gate, self.smoother, given.truth)
         converged = found.status == ReplayStatus.CONVERGED.sentence
         tests = self_tests(model, *known, found, self.gate)
-        return told(found._replace(counts=found.counts | {"converged": converged}), tests)
+        found = told(found._replace(counts=found.counts | {"converged": converged}), tests)
+        return found if self.smoother else with_hindsight(model, found)

@@ -114,6 +114,7 @@ class StereoPoseAdditive(_StereoPose):
 class StereoPose(_StereoPose):
     """The whole motion follows from its start: rotation vectors in place of quaternions."""
 
+    version = 2
     model_kind = "replay_model"
     kind: Literal["stereo_pose"]
 

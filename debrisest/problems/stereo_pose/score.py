@@ -4,6 +4,7 @@ import numpy as np
 
 from debrisest.arrays import Array, Data
 from debrisest.assessment.nees import covariance_epochs, deviation, nees
+from debrisest.assessment.statistics import per_dimension
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.problems.stereo_pose.chart import difference, plain_difference, robocentric
@@ -19,7 +20,11 @@ def scores(data: Data, delay: int) -> Data:
         return {}
     late = data | {name: _later(data[name], delay) for name in _MOVING}
     with np.errstate(invalid="ignore"):
-        return _errors(late) | _consistency(late)
+        result = _errors(late) | _consistency(late)
+    if delay == 0 and "square_half_way" in data:
+        dof = np.where(np.isfinite(data["square_half_way"]), len(data["error_name"]), 0.0)
+        result |= {"nees": per_dimension(data["square_half_way"], dof), "nees_dof": dof}
+    return result
 
 
 def _later(values: Array, epochs: int) -> Array:

@@ -12,10 +12,10 @@ from debrisest.roles import ProblemPart, Window
 from debrisest.runner.stages.reason import about
 from debrisest.scenario.case import Case
 
-VERSION = 6
+VERSION = 7
 
-_COUNTED = ("converged", "repairs", "reopened", "doubt")
-"""What filters count over whole runs."""
+_COUNTED = ("converged", "repairs", "reopened", "doubt", "doubt_at")
+"""What filters count, and assess passes on."""
 
 
 def inputs(case: Case, estimator: str) -> dict[str, Any]:
