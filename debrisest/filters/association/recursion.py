@@ -14,7 +14,7 @@ from debrisest.filters.association.evidence import (
     nothing_yet,
     predicted,
 )
-from debrisest.filters.association.sensor import updated
+from debrisest.filters.association.sensor import Given, updated
 from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.runs import take
@@ -165,7 +165,7 @@ def _look(
         innovation = scan[:, None, group] - predicted[..., None, :]
         part = Scan(innovation, h[:, :, group])
         known = doubted[:, group], model.noise, settings.gate, settings.weigh
-        tracks, beside, more, judged = updated(tracks, beside, part, *known)
+        tracks, beside, more, judged = updated(Given(tracks, beside, part, *known))
         seen = seen.plus(judged, shown.shape[-1])
         evidence = evidence.plus(more)
         others[:, group] = unclaimed(innovation, judged)
