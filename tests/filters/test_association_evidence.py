@@ -38,18 +38,27 @@ MODEL = ScanModel(
 )
 
 
-def covariance_of_all_data(factor=1.0):
-    """Dense (time sensor d), by adding up what each cause does to every measurement.
+def causes(factor=1.0):
+    """What start and accelerations do to all data (time sensor d) and to the last state.
 
-    Accelerations are so many times as large as stated.
+    Each a column per unit normal number; accelerations are so many times as large as stated.
     """
-    rows = [np.concatenate(H) @ np.linalg.matrix_power(F, k) for k in range(EPOCHS)]
-    start = np.concatenate(rows)
-    total = start @ P0 @ start.T + np.kron(np.eye(2 * EPOCHS), R)
-    for j in range(1, EPOCHS):
-        kick = np.concatenate([np.zeros((4, 2))] * j + rows[: EPOCHS - j])
-        total += factor**2 * kick @ Q @ kick.T
-    return total
+    states = [np.linalg.matrix_power(F, k) @ P0**0.5 for k in range(EPOCHS)]
+    kick = [np.linalg.matrix_power(F, k) @ (1e-2 * factor * INPUT) for k in range(EPOCHS)]
+    moved = np.stack(
+        [
+            np.stack([kick[k - j] if k >= j else np.zeros(2) for j in range(1, EPOCHS)], 1)
+            for k in range(EPOCHS)
+        ]
+    )
+    every = np.concatenate([np.stack(states), moved], axis=-1)
+    return (np.concatenate(H) @ every).reshape(4 * EPOCHS, -1), every[-1]
+
+
+def covariance_of_all_data(factor=1.0):
+    """Dense (time sensor d, time sensor d)."""
+    shown, _ = causes(factor)
+    return shown @ shown.T + np.kron(np.eye(2 * EPOCHS), R)
 
 
 def drawn(seed, acceleration=1.0, doubt=(0.0, 0.0)):
@@ -101,6 +110,30 @@ def test_likelihoods_of_the_bank_are_those_of_all_data(factor: float) -> None:
     square = (flat * np.linalg.solve(total, flat.T).T).sum(-1)
     expected = -0.5 * (square + np.linalg.slogdet(total)[1])
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
+
+
+def test_the_mixture_is_that_of_two_least_squares_fits_to_all_data() -> None:
+    scans = drawn(1, acceleration=1.7)
+    flat, means, spreads, weights = scans.reshape(RUNS, -1), [], [], []
+    for factor in FACTORS:
+        shown, last = causes(factor)
+        total = covariance_of_all_data(factor)
+        white = np.linalg.solve(total, flat.T).T
+        means.append(white @ shown @ last.T)
+        spreads.append(
+            last @ (np.eye(last.shape[1]) - shown.T @ np.linalg.solve(total, shown)) @ last.T
+        )
+        weights.append(-0.5 * (flat * white).sum(-1) - 0.5 * np.linalg.slogdet(total)[1])
+    weight = 1.0 / (1.0 + np.exp(np.array(weights[::-1]) - weights))
+    assert 0.05 < np.median(weight[1]) < 0.95
+    mean = (weight[..., None] * means).sum(0)
+    apart = np.array(means) - mean
+    spread = np.array(spreads)[:, None] + apart[..., :, None] * apart[..., None, :]
+    start = np.zeros((RUNS, 2)), np.tile(P0, (RUNS, 1, 1))
+    found = associated(MODEL, *start, scans, Validation(), method="known", restless=True)
+    np.testing.assert_allclose(found.state[:, -1], mean, rtol=1e-8, atol=1e-9)
+    expected = (weight[..., None, None] * spread).sum(0)
+    np.testing.assert_allclose(found.covariance[:, -1], expected, rtol=1e-8)
 
 
 def test_a_right_model_has_normal_scores() -> None:

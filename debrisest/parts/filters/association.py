@@ -79,6 +79,10 @@ class AssociationFilter(_Validating):
     truth (nothing that one could use)."""
     relinearised_s: Positive | None = None
     """With `linearised: start`, move to the estimate every so often."""
+    process_noise: Literal["stated", "stated_or_more"] = "stated"
+    """With `stated_or_more`, three times the stated one is taken to be as likely before the data:
+    the estimate is the mixture of both, and errors stay within their sigmas where more is at work
+    than the data can tell; they are a few percent larger where it is not."""
 
     @property
     def uses_truth(self) -> bool:
@@ -99,6 +103,7 @@ class AssociationFilter(_Validating):
             stacked=self.stacked,
             relinearise=self._every(given.clock.step),
             truth=given.known_truth if self.linearised == "truth" else None,
+            restless=self.process_noise == "stated_or_more",
             keep=kept_epochs(self.keep_s, given.clock),
         )
         certain, once = self.method == "nearest", self._every(1.0) == 0
