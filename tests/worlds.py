@@ -104,7 +104,7 @@ KEYS: dict[str, dict[str, list[Any]]] = {
     "replay": {"smoother": [False, True], "gate": [False, True]},
     "efficient": {"smoother": [False, True]},
     "association": {"method": ["probabilistic", "nearest"], "linearised": ["estimate", "start"]}
-    | {"gate_dimension": [None, 4]},
+    | {"gate_dimension": [None, 4], "process_noise": ["stated", "stated_or_more"]},
     "landmark_batch": {"windows_s": [[5.0, 10.0]], "spacing_s": [[1.0, 2.0]], "restarts": [0]}
     | {"batch_iterations": [3]},
 }

@@ -1,7 +1,7 @@
 """What an estimate says of itself: tests that see what the size of the innovations does not.
 
 Every test compares a statistic of each run with what a right model and a converged estimate give
-by chance once in some ten thousand times at most.
+by chance once in some ten thousand times at most, that of all scores together once in a thousand.
 """
 
 import numpy as np
@@ -15,6 +15,9 @@ SIGMAS = 5.0
 """Whose probability, of a normal distribution, is that of a square that is too large."""
 _SIGMAS_OF_SCORES = 4.0
 """Of a normal distribution, once in 16 000 times."""
+_CHANCE_OF_ALL = 1e-3
+_ALIKE = 1e-6
+"""Part of a score that is taken to be its own, so that others which are the same are no news."""
 _CLAIMED = 2.0
 """Times the information that there is, above which a sigma is too small by more than 1.4."""
 
@@ -95,6 +98,24 @@ def score_test(value: Array, sigma: Array, reason: str, scale: float = 1.0) -> S
     ``reason`` may use ``{value}``, which is in sigmas, and ``{size}``, the value times ``scale``.
     """
     return SelfTest(np.abs(value) / sigma, _SIGMAS_OF_SCORES, reason, size=scale * value)
+
+
+def scores_test(scores: Array, correlation: Array) -> SelfTest:
+    """Test all the scores (run, n) of a run together, each in its sigmas (Rao).
+
+    With their ``correlation (run, n, n)`` the sum of squares is a chi-square, which sees parameters
+    that are off together, each by too little for `score_test`.
+    """
+    from scipy.special import chdtri
+
+    n = scores.shape[-1]
+    own = solve(correlation + _ALIKE * np.eye(n), scores[..., None])[..., 0]
+    return SelfTest(
+        (scores * own).sum(-1) / n,
+        float(chdtri(n, _CHANCE_OF_ALL)) / n,
+        "what is seen goes with what the model takes for granted, all of it together: the squared "
+        "scores are {value} of what noise has, at most {limit} by chance",
+    )
 
 
 def bend_test(rise: Array) -> SelfTest:

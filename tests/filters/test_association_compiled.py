@@ -1,7 +1,6 @@
 """The compiled update by one sensor against the numpy code, whose oracles are in other files."""
 
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -11,8 +10,8 @@ from debrisest.arrays import Array
 from debrisest.filters.association.evidence import Beside
 from debrisest.filters.association.joint import joint
 from debrisest.filters.association.restless import Bank
-from debrisest.filters.association.sensor import updated
-from debrisest.filters.association.update import Scan, Tracks
+from debrisest.filters.association.sensor import Given, updated
+from debrisest.filters.association.update import Scan, Tracks, Weigh
 from debrisest.filters.association.weights import Validation, nearest, probabilistic
 
 pytest.importorskip("numba")
@@ -21,14 +20,7 @@ RUNS, N, DOUBTS = 60, 6, 4
 NOISE, GATE = np.array([[0.5, 0.1], [0.1, 0.8]]), 9.21
 
 
-class Given(NamedTuple):
-    tracks: Tracks
-    beside: Beside
-    scan: Scan
-    doubted: Array
-
-
-def drawn(tracks: int, detections: int) -> Given:
+def drawn(tracks: int, detections: int, weigh: Weigh) -> Given:
     draws = np.random.default_rng(tracks + 10 * detections)
 
     def positive(*axes: int) -> Array:
@@ -46,7 +38,8 @@ def drawn(tracks: int, detections: int) -> Given:
     covariance[3] = np.nan
     doubted = draws.normal(size=(RUNS, 1, 2, DOUBTS))
     beside = Beside(pull, Bank(apart, bank))
-    return Given(Tracks(state, covariance), beside, Scan(innovation, derivative), doubted)
+    target, scan = Tracks(state, covariance), Scan(innovation, derivative)
+    return Given(target, beside, scan, doubted, NOISE, GATE, weigh)
 
 
 def of_two_tracks(distance: Array) -> Array:
@@ -64,16 +57,16 @@ def leaves(value: object) -> list[Array]:
 def test_an_update_is_the_same(
     monkeypatch: pytest.MonkeyPatch, weigh: str, detections: int
 ) -> None:
-    given = drawn(2 if weigh == "joint" else 1, detections)
     ways = {"nearest": nearest, "joint": of_two_tracks}
     way = ways.get(weigh, partial(probabilistic, validation=Validation(), d=2))
-    before = [part.copy() for part in leaves(given)]
+    given = drawn(2 if weigh == "joint" else 1, detections, way)
+    before = [part.copy() for part in leaves(given[:4])]
     found = []
     for fast in (True, False):
         monkeypatch.setattr(compiled, "available", lambda fast=fast: fast)
         with np.errstate(all="ignore"):
-            found.append(leaves(updated(*given, NOISE, GATE, way)))
-    assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(before, leaves(given)))
+            found.append(leaves(updated(given)))
+    assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(before, leaves(given[:4])))
     assert len(found[0]) == len(found[1]) == 13
     for loops, plain in zip(*found):
         assert loops.shape == plain.shape and loops.dtype == plain.dtype

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from debrisest.filters.association.companions import pairs
-from debrisest.filters.association.evidence import score_sigma
+from debrisest.filters.association.evidence import score_correlation, score_sigma
 from debrisest.filters.association.restless import FACTORS, log_ratio
 from debrisest.filters.association.self_tests import agitation_test, companion_test, crowd_test
 from debrisest.filters.association.single import associated
 from debrisest.filters.association.weights import Validation
 from debrisest.filters.doubt import Doubt
 from debrisest.filters.scan_model import ScanModel
-from debrisest.filters.self_test import score_test
+from debrisest.filters.self_test import score_test, scores_test
 
 RUNS, EPOCHS = 400, 60
 F = np.array([[1.0, 1.0], [0.0, 1.0]])
@@ -38,18 +38,27 @@ MODEL = ScanModel(
 )
 
 
-def covariance_of_all_data(factor=1.0):
-    """Dense (time sensor d), by adding up what each cause does to every measurement.
+def causes(factor=1.0):
+    """What start and accelerations do to all data (time sensor d) and to the last state.
 
-    Accelerations are so many times as large as stated.
+    Each a column per unit normal number; accelerations are so many times as large as stated.
     """
-    rows = [np.concatenate(H) @ np.linalg.matrix_power(F, k) for k in range(EPOCHS)]
-    start = np.concatenate(rows)
-    total = start @ P0 @ start.T + np.kron(np.eye(2 * EPOCHS), R)
-    for j in range(1, EPOCHS):
-        kick = np.concatenate([np.zeros((4, 2))] * j + rows[: EPOCHS - j])
-        total += factor**2 * kick @ Q @ kick.T
-    return total
+    states = [np.linalg.matrix_power(F, k) @ P0**0.5 for k in range(EPOCHS)]
+    kick = [np.linalg.matrix_power(F, k) @ (1e-2 * factor * INPUT) for k in range(EPOCHS)]
+    moved = np.stack(
+        [
+            np.stack([kick[k - j] if k >= j else np.zeros(2) for j in range(1, EPOCHS)], 1)
+            for k in range(EPOCHS)
+        ]
+    )
+    every = np.concatenate([np.stack(states), moved], axis=-1)
+    return (np.concatenate(H) @ every).reshape(4 * EPOCHS, -1), every[-1]
+
+
+def covariance_of_all_data(factor=1.0):
+    """Dense (time sensor d, time sensor d)."""
+    shown, _ = causes(factor)
+    return shown @ shown.T + np.kron(np.eye(2 * EPOCHS), R)
 
 
 def drawn(seed, acceleration=1.0, doubt=(0.0, 0.0)):
@@ -69,6 +78,15 @@ def followed(scans, model=MODEL):
     return associated(model, *start, scans, Validation(), method="known").counts
 
 
+def size_and_sigma(counts):
+    size = counts["score"] / np.diagonal(counts["information"], 0, -2, -1)
+    return size, size / sigmas(counts)
+
+
+def all_together(counts):
+    return scores_test(sigmas(counts), score_correlation(counts["information"]))
+
+
 def sigmas(counts):
     return counts["score"] / score_sigma(counts["square"], counts["information"])
 
@@ -79,8 +97,8 @@ def test_scores_are_those_of_the_likelihood_of_all_data() -> None:
     columns = COLUMNS.reshape(-1, 2)
     expected = scans.reshape(RUNS, -1) @ np.linalg.solve(dense, columns)
     np.testing.assert_allclose(counts["score"], expected, rtol=1e-8, atol=1e-8)
-    information = (columns * np.linalg.solve(dense, columns)).sum(0)
-    expected = np.tile(information, (RUNS, 1))
+    information = columns.T @ np.linalg.solve(dense, columns)
+    expected = np.tile(information, (RUNS, 1, 1))
     np.testing.assert_allclose(counts["information"], expected, rtol=1e-9)
 
 
@@ -94,6 +112,30 @@ def test_likelihoods_of_the_bank_are_those_of_all_data(factor: float) -> None:
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
 
 
+def test_the_mixture_is_that_of_two_least_squares_fits_to_all_data() -> None:
+    scans = drawn(1, acceleration=1.7)
+    flat, means, spreads, weights = scans.reshape(RUNS, -1), [], [], []
+    for factor in FACTORS:
+        shown, last = causes(factor)
+        total = covariance_of_all_data(factor)
+        white = np.linalg.solve(total, flat.T).T
+        means.append(white @ shown @ last.T)
+        spreads.append(
+            last @ (np.eye(last.shape[1]) - shown.T @ np.linalg.solve(total, shown)) @ last.T
+        )
+        weights.append(-0.5 * (flat * white).sum(-1) - 0.5 * np.linalg.slogdet(total)[1])
+    weight = 1.0 / (1.0 + np.exp(np.array(weights[::-1]) - weights))
+    assert 0.05 < np.median(weight[1]) < 0.95
+    mean = (weight[..., None] * means).sum(0)
+    apart = np.array(means) - mean
+    spread = np.array(spreads)[:, None] + apart[..., :, None] * apart[..., None, :]
+    start = np.zeros((RUNS, 2)), np.tile(P0, (RUNS, 1, 1))
+    found = associated(MODEL, *start, scans, Validation(), method="known", restless=True)
+    np.testing.assert_allclose(found.state[:, -1], mean, rtol=1e-8, atol=1e-9)
+    expected = (weight[..., None, None] * spread).sum(0)
+    np.testing.assert_allclose(found.covariance[:, -1], expected, rtol=1e-8)
+
+
 def test_a_right_model_has_normal_scores() -> None:
     found = sigmas(followed(drawn(2)))
     assert np.abs(found.mean(0)).max() < 4.0 / RUNS**0.5
@@ -103,11 +145,34 @@ def test_a_right_model_has_normal_scores() -> None:
 
 def test_each_wrong_model_is_told_by_its_own_score() -> None:
     counts = followed(drawn(4, doubt=(0.0, 0.5)))
-    size = counts["score"] / counts["information"]
-    sigma = size / sigmas(counts)
+    size, sigma = size_and_sigma(counts)
     assert score_test(size[:, 1], sigma[:, 1], "b").failed.mean() > 0.95
     np.testing.assert_allclose(size[:, 1].mean(), 0.5, rtol=0.1)
     assert not score_test(size[:, 0], 3.0 * sigma[:, 0], "a").failed.any()
+
+
+def test_scores_together_are_a_chi_square() -> None:
+    """A little more, since their sigma is the lesser of two."""
+    tests = [all_together(followed(drawn(seed))) for seed in range(20, 30)]
+    assert 0.95 < np.mean([test.value for test in tests]) < 1.1
+    assert np.mean([test.failed for test in tests]) < 0.003
+
+
+def test_doubts_that_are_small_each_are_told_together() -> None:
+    """Two numbers, each off by the same number of sigmas, in a direction that tells most."""
+    counts = followed(drawn(31, doubt=(0.16, 0.16)))
+    size, sigma = size_and_sigma(counts)
+    apart = [score_test(size[:, i], sigma[:, i], "").failed for i in range(2)]
+    assert all_together(counts).failed.mean() > 1.5 * np.logical_or(*apart).mean()
+
+
+def test_a_doubt_that_nothing_shows_takes_nothing_from_the_others() -> None:
+    columns = COLUMNS * [1.0, 0.0]
+    blind = MODEL._replace(
+        doubted=lambda x, k: np.broadcast_to(columns[k], (*x.shape[:-1], 2, 2, 2))
+    )
+    counts = followed(drawn(32, doubt=(0.5, 0.0)), blind)
+    assert all_together(counts).failed.mean() > 0.95
 
 
 def agitated(seed, acceleration):

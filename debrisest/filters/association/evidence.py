@@ -18,6 +18,8 @@ from debrisest.filters.association.update import Correction
 from debrisest.filters.linear_algebra import solve
 from debrisest.filters.scan_model import ScanModel
 
+_NOTHING = 1e-300
+
 
 class Beside(NamedTuple):
     """How the estimate of the target would be another one if the model were."""
@@ -33,7 +35,9 @@ class Evidence(NamedTuple):
     score: Array
     """Products of innovations and what they would be for each doubt, (run, doubt)."""
     square: Array
+    """Products of the scores of an epoch, (run, doubt, doubt)."""
     information: Array
+    """What the filter states for the sum of these."""
     likelihood: Array
     """Logarithmic, of each filter of the bank, (run, filter)."""
 
@@ -43,7 +47,8 @@ class Evidence(NamedTuple):
 
     def add(self, runs: IntArray, shown: "Evidence") -> None:
         """Add what an epoch shows of some runs, whose products count as one, in place."""
-        for total, values in zip(self, shown._replace(square=shown.score**2)):
+        square = shown.score[:, :, None] * shown.score[:, None]
+        for total, values in zip(self, shown._replace(square=square)):
             total[runs] += values
 
 
@@ -56,8 +61,9 @@ def nothing_yet(model: ScanModel, state: Array, covariance: Array) -> tuple[Besi
 
 def no_evidence(runs: int, doubts: int) -> Evidence:
     """Return no evidence."""
-    score, square, information = np.zeros((3, runs, doubts))
-    return Evidence(score, square, information, np.zeros((runs, len(restless.FACTORS))))
+    square, information = np.zeros((2, runs, doubts, doubts))
+    likelihood = np.zeros((runs, len(restless.FACTORS)))
+    return Evidence(np.zeros((runs, doubts)), square, information, likelihood)
 
 
 def score_sigma(square: Array, information: Array) -> Array:
@@ -65,7 +71,18 @@ def score_sigma(square: Array, information: Array) -> Array:
 
     The latter is too large for detections that may be clutter, the former for few large products.
     """
-    return np.minimum(square, information) ** 0.5
+    return _root(np.minimum(square, information))
+
+
+def score_correlation(information: Array) -> Array:
+    """Return how scores are correlated (run, doubt, doubt), as the filter states it."""
+    sigma = _root(information)
+    return information / (sigma[:, :, None] * sigma[:, None])
+
+
+def _root(square: Array) -> Array:
+    """Square root of the diagonal, not zero where nothing tells of a doubt, whose score is zero."""
+    return np.asarray(np.maximum(np.diagonal(square, 0, -2, -1), _NOTHING) ** 0.5)
 
 
 def predicted(beside: Beside, transition: Array, noise: Array) -> Beside:
@@ -86,5 +103,5 @@ def corrected(beside: Beside, made: Correction, doubted: Array) -> tuple[Beside,
     pull = beside.pull - np.swapaxes(made.gain[:, 0], -2, -1) @ expected
     score = (change * white[..., :1]).sum(-2)
     bank, likelihood = restless.corrected(beside.bank, made)
-    information = (expected * white[..., 1:]).sum(-2)
-    return Beside(pull, bank), Evidence(score, 0.0 * score, information, likelihood)
+    information = np.swapaxes(expected, -2, -1) @ white[..., 1:]
+    return Beside(pull, bank), Evidence(score, 0.0 * information, information, likelihood)

@@ -14,7 +14,8 @@ from debrisest.filters.association.evidence import (
     nothing_yet,
     predicted,
 )
-from debrisest.filters.association.sensor import updated
+from debrisest.filters.association.restless import Bank, mixed
+from debrisest.filters.association.sensor import Given, updated
 from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.runs import take
@@ -35,6 +36,8 @@ class AssociationSettings(NamedTuple):
     """Epochs from one linearisation about the estimate to the next, 0: never."""
     truth: Array | None
     """What to linearise about instead, (run, time, n)."""
+    restless: bool = False
+    """Whether the estimate is the mixture of the track's bank, and not the track."""
 
     def of(self, runs: IntArray) -> "AssociationSettings":
         """Return the settings for some runs."""
@@ -123,10 +126,18 @@ def filtered(
             (near, ring), before = pairs(before, look.others, model.noise), look.others
             if settings.relinearise > 0 and (k + 1) % settings.relinearise == 0:
                 nominal = tracks.state
-            target = tracks.state[:, 0], tracks.covariance[:, 0]
+            bank = beside.bank if settings.restless else None
+            target = _estimate(tracks, bank, evidence.likelihood[writer.runs])
             going = writer.record(k, *target, look.seen._asdict() | {"near": near, "ring": ring})
     found = writer.estimates()
     return found._replace(counts=found.counts | evidence._asdict())
+
+
+def _estimate(tracks: Tracks, bank: Bank | None, likelihood: Array) -> tuple[Array, Array]:
+    """State and covariance of the target; of the bank's mixture, if it is given."""
+    if bank is None:
+        return tracks.state[:, 0], tracks.covariance[:, 0]
+    return mixed(bank, likelihood, tracks.state[:, 0])
 
 
 def _predict(
@@ -165,7 +176,7 @@ def _look(
         innovation = scan[:, None, group] - predicted[..., None, :]
         part = Scan(innovation, h[:, :, group])
         known = doubted[:, group], model.noise, settings.gate, settings.weigh
-        tracks, beside, more, judged = updated(tracks, beside, part, *known)
+        tracks, beside, more, judged = updated(Given(tracks, beside, part, *known))
         seen = seen.plus(judged, shown.shape[-1])
         evidence = evidence.plus(more)
         others[:, group] = unclaimed(innovation, judged)

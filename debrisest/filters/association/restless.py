@@ -4,6 +4,7 @@ Beside the track run two Kalman filters, one of which expects the stated process
 both take over which detections are the target's. No test of one model against another is more
 powerful than the ratio of their likelihoods (Neyman and Pearson 1933). Its mean is one if the first
 is right, so that it exceeds 1 / p with a probability of p at most, however long the data are.
+Where the ratio decides nothing, their mixture is an estimate whose covariance has both.
 """
 
 from typing import NamedTuple
@@ -63,6 +64,20 @@ def corrected(bank: Bank, made: Correction) -> tuple[Bank, Array]:
     moved = moved - (made.innovation[:, :1, None] @ made.gain[:, :1])[..., 0, :]
     likelihood = -0.5 * ((innovation * white).sum(-1) + np.linalg.slogdet(total)[1])
     return Bank(bank.apart + moved, covariance), likelihood
+
+
+def mixed(bank: Bank, likelihood: Array, state: Array) -> tuple[Array, Array]:
+    """Return mean (run, n) and covariance (run, n, n) where either filter may be right.
+
+    Both are as likely before the data, and then by their ``likelihood (run, filter)`` so far
+    (Magill 1965); ``state`` is that of the track.
+    """
+    weight = np.exp(likelihood - likelihood.max(-1, keepdims=True))
+    weight = weight / weight.sum(-1, keepdims=True)
+    mean = (weight[..., None] * bank.apart).sum(1)
+    apart = bank.apart - mean[:, None]
+    spread = bank.covariance + apart[..., :, None] * apart[..., None, :]
+    return state + mean, (weight[..., None, None] * spread).sum(1)
 
 
 def log_ratio(likelihood: Array) -> Array:

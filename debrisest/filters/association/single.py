@@ -28,6 +28,7 @@ def associated(
     stacked: bool = False,
     relinearise: int = 1,
     truth: Array | None = None,
+    restless: bool = False,
     keep: Sequence[int] = (),
 ) -> Estimates:
     """Filter a batch of runs, each with one target.
@@ -49,13 +50,17 @@ def associated(
     * else: about the start, moved to the estimate every so many epochs;
     * `truth` (run, time, n) overrules: no estimator, but with `"known"` the efficient one.
 
+    A `restless` estimate is that of two filters, one of which expects more process noise than the
+    model has (see `restless`); the detections are judged by the track all the same.
+
     The NIS of a sensor is the mean of the squared distances of the validated detections, by their
     probabilities; `nis_dof` counts its d components. It is chi-square for `"known"` only, and there
     not if `stacked`: else it is cut off at the gate, and drawn to small values by the choice.
     """
     gate = np.inf if method == "known" else validation.gate
     weigh = _weigh(validation, method, scans)
-    settings = AssociationSettings(gate, weigh, stacked, relinearise if truth is None else 0, truth)
+    every = relinearise if truth is None else 0
+    settings = AssociationSettings(gate, weigh, stacked, every, truth, restless)
     return filtered(model, state[:, None], covariance[:, None], scans, settings, keep)
 
 

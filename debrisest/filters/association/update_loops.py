@@ -28,8 +28,8 @@ def judge(
     for r in range(rows):
         if not np.isfinite(h[r]).all():
             continue
-        _cross(h, r, covariance[r], 1.0, cross)
-        xx, xy, yy = _inverse(_total(h, r, cross, 1.0, noise))
+        _cross(h[r], covariance[r], 1.0, cross)
+        xx, xy, yy = _inverse(_total(h[r], cross, 1.0, noise))
         for i in range(detections):
             x, y = innovation[r, i, 0], innovation[r, i, 1]
             present[r, i] = math.isfinite(x) and math.isfinite(y)
@@ -72,8 +72,8 @@ def move(
                 xx += probability[r, i] * x * x
                 xy += probability[r, i] * x * y
                 yy += probability[r, i] * y * y
-        _cross(used, r, covariance[r], 1.0, cross)
-        s = _total(used, r, cross, 1.0, noise)
+        _cross(used[r], covariance[r], 1.0, cross)
+        s = _total(used[r], cross, 1.0, noise)
         total[r, 0], total[r, 1], total[r, 2] = s
         spread[r, 0] = xx + b * noise[0, 0] + b * rest * (s[0] - noise[0, 0])
         spread[r, 1] = xy + b * noise[0, 1] + b * rest * (s[1] - noise[0, 1])
@@ -82,7 +82,7 @@ def move(
         for i in range(state.shape[1]):
             state[r, i] += mean_x * gain[r, 0, i] + mean_y * gain[r, 1, i]
         around = (spread[r, 0], spread[r, 1], spread[r, 2])
-        _joseph(used, r, covariance[r], b, gain[r], around, cross, after)
+        _joseph(used[r], covariance[r], b, gain[r], around, cross, after)
     return trust, mean, total, spread, used, gain
 
 
@@ -97,22 +97,15 @@ def beside(
     """
     trust, mean, total, spread, used, gain = moved
     (runs, n, doubts), filters = pull.shape, apart.shape[1]
-    score, information = np.zeros((runs, doubts)), np.zeros((runs, doubts))
+    score, information = np.zeros((runs, doubts)), np.zeros((runs, doubts, doubts))
     likelihood = np.empty((runs, filters))
-    cross, after, better = np.empty((2, n)), np.empty((2, n)), np.empty((2, n))
+    change, better = np.empty((2, doubts)), np.empty((2, n))
+    cross, after = np.empty((2, n)), np.empty((2, n))
     for r in range(runs):
-        b, mean_x, mean_y = trust[r], mean[r, 0], mean[r, 1]
-        xx, xy, yy = _inverse((total[r, 0], total[r, 1], total[r, 2]))
-        for j in range(doubts):
-            x, y = doubted[r, 0, j], doubted[r, 1, j]
-            for i in range(n):
-                x += used[r, 0, i] * pull[r, i, j]
-                y += used[r, 1, i] * pull[r, i, j]
-            white_x, white_y = xx * x + xy * y, xy * x + yy * y
-            score[r, j] = white_x * mean_x + white_y * mean_y
-            information[r, j] = b * (white_x * x + white_y * y)
-            for i in range(n):
-                pull[r, i, j] -= b * (gain[r, 0, i] * x + gain[r, 1, i] * y)
+        b, shown, h, k = trust[r], mean[r], used[r], gain[r]
+        inverse = _inverse((total[r, 0], total[r, 1], total[r, 2]))
+        _pull(pull[r], doubted[r], h, b, k, change)
+        _score(change, inverse, b, shown, score[r], information[r])
         unseen = 0.0 if b > 0.0 else 1.0
         around = (
             spread[r, 0] + unseen * noise[0, 0],
@@ -120,51 +113,86 @@ def beside(
             spread[r, 2] + unseen * noise[1, 1],
         )
         for f in range(filters):
-            _cross(used, r, bank[r, f], b, cross)
-            s = _own(used, r, cross, b)
+            _cross(h, bank[r, f], b, cross)
+            s = _own(h, cross, b)
             s = (s[0] + around[0], s[1] + around[1], s[2] + around[2])
             _gain(s, cross, better)
-            x, y = mean_x, mean_y
-            for i in range(n):
-                x -= b * used[r, 0, i] * apart[r, f, i]
-                y -= b * used[r, 1, i] * apart[r, f, i]
-            xx, xy, yy = _inverse(s)
-            square = xx * x * x + 2.0 * xy * x * y + yy * y * y
-            likelihood[r, f] = -0.5 * (square + math.log(abs(s[0] * s[2] - s[1] * s[1])))
-            for i in range(n):
-                apart[r, f, i] += x * better[0, i] + y * better[1, i]
-                apart[r, f, i] -= mean_x * gain[r, 0, i] + mean_y * gain[r, 1, i]
-            _joseph(used, r, bank[r, f], b, better, around, cross, after)
+            likelihood[r, f] = _apart(apart[r, f], h, b, shown, s, better, k)
+            _joseph(h, bank[r, f], b, better, around, cross, after)
     return score, information, likelihood
 
 
 @compiled
-def _cross(h: Array, r: int, covariance: Array, b: float, cross: Array) -> None:
+def _pull(pull: Array, doubted: Array, h: Array, b: float, gain: Array, change: Array) -> None:
+    """Write what is shown per doubt, ``change (2, doubt)``, and update the pull."""
+    n, doubts = pull.shape
+    for j in range(doubts):
+        x, y = doubted[0, j], doubted[1, j]
+        for i in range(n):
+            x += h[0, i] * pull[i, j]
+            y += h[1, i] * pull[i, j]
+        for i in range(n):
+            pull[i, j] -= b * (gain[0, i] * x + gain[1, i] * y)
+        change[0, j], change[1, j] = x, y
+
+
+@compiled
+def _score(
+    change: Array, inverse: Any, b: float, shown: Array, score: Array, information: Array
+) -> None:
+    xx, xy, yy = inverse
+    for j in range(len(score)):
+        white_x = xx * change[0, j] + xy * change[1, j]
+        white_y = xy * change[0, j] + yy * change[1, j]
+        score[j] = white_x * shown[0] + white_y * shown[1]
+        for i in range(len(score)):
+            information[i, j] = b * (white_x * change[0, i] + white_y * change[1, i])
+
+
+@compiled
+def _apart(
+    apart: Array, h: Array, b: float, shown: Array, total: Any, better: Array, gain: Array
+) -> float:
+    """Update a filter's state; return the logarithmic likelihood of what is shown."""
+    x, y = shown[0], shown[1]
+    for i in range(len(apart)):
+        x -= b * h[0, i] * apart[i]
+        y -= b * h[1, i] * apart[i]
+    for i in range(len(apart)):
+        apart[i] += x * better[0, i] + y * better[1, i]
+        apart[i] -= shown[0] * gain[0, i] + shown[1] * gain[1, i]
+    xx, xy, yy = _inverse(total)
+    square = xx * x * x + 2.0 * xy * x * y + yy * y * y
+    return float(-0.5 * (square + math.log(abs(total[0] * total[2] - total[1] * total[1]))))
+
+
+@compiled
+def _cross(h: Array, covariance: Array, b: float, cross: Array) -> None:
     """Write b H P (2, n)."""
     n = len(covariance)
     for a in range(2):
         for j in range(n):
             cross[a, j] = 0.0
         for i in range(n):
-            factor = b * h[r, a, i]
+            factor = b * h[a, i]
             for j in range(n):
                 cross[a, j] += factor * covariance[i, j]
 
 
 @compiled
-def _own(h: Array, r: int, cross: Array, b: float) -> Any:
+def _own(h: Array, cross: Array, b: float) -> Any:
     """Return the elements xx, xy, yy of b H P H^T."""
     xx = xy = yy = 0.0
-    for i in range(h.shape[2]):
-        xx += cross[0, i] * h[r, 0, i]
-        xy += cross[0, i] * h[r, 1, i]
-        yy += cross[1, i] * h[r, 1, i]
+    for i in range(h.shape[1]):
+        xx += cross[0, i] * h[0, i]
+        xy += cross[0, i] * h[1, i]
+        yy += cross[1, i] * h[1, i]
     return b * xx, b * xy, b * yy
 
 
 @compiled
-def _total(h: Array, r: int, cross: Array, b: float, noise: Array) -> Any:
-    xx, xy, yy = _own(h, r, cross, b)
+def _total(h: Array, cross: Array, b: float, noise: Array) -> Any:
+    xx, xy, yy = _own(h, cross, b)
     return xx + noise[0, 0], xy + noise[0, 1], yy + noise[1, 1]
 
 
@@ -184,20 +212,19 @@ def _gain(s: Any, cross: Array, gain: Array) -> None:
 
 @compiled
 def _joseph(
-    h: Array, r: int, covariance: Array, b: float, gain: Array, spread: Any,
-    cross: Array, after: Array,
-) -> None:  # fmt: skip
+    h: Array, covariance: Array, b: float, gain: Array, spread: Any, cross: Array, after: Array
+) -> None:
     """Replace P by (I - b K H) P (I - b K H)^T + K S K^T; ``gain`` is K^T (2, n)."""
     n = len(covariance)
-    _cross(h, r, covariance, b, cross)
+    _cross(h, covariance, b, cross)
     for i in range(n):
         for j in range(n):
             covariance[i, j] -= gain[0, i] * cross[0, j] + gain[1, i] * cross[1, j]
     for i in range(n):
         after[0, i] = after[1, i] = 0.0
         for k in range(n):
-            after[0, i] += b * h[r, 0, k] * covariance[i, k]
-            after[1, i] += b * h[r, 1, k] * covariance[i, k]
+            after[0, i] += b * h[0, k] * covariance[i, k]
+            after[1, i] += b * h[1, k] * covariance[i, k]
         after[0, i] -= spread[0] * gain[0, i] + spread[1] * gain[1, i]
         after[1, i] -= spread[1] * gain[0, i] + spread[2] * gain[1, i]
     for i in range(n):

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from debrisest.filters.association.evidence import score_sigma
+from debrisest.filters.association.evidence import score_correlation, score_sigma
 from debrisest.filters.association.restless import log_ratio
 from debrisest.filters.association.self_tests import (
     agitation_test,
@@ -18,7 +18,7 @@ from debrisest.filters.association.single import associated, jointly_associated
 from debrisest.filters.association.weights import Validation, inverse_unit_ball, unit_ball
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.scan_model import ScanModel
-from debrisest.filters.self_test import innovation_test, score_test
+from debrisest.filters.self_test import innovation_test, score_test, scores_test
 from debrisest.filters.verdict import SelfTest, told
 from debrisest.parts.filters.kalman import KeptTimes, kept_epochs
 from debrisest.roles import FilterPart, Given, Positive
@@ -33,7 +33,7 @@ Probability = Annotated[float, Field(gt=0, le=1)]
 class _Validating(FilterPart):
     """Keys of the filters that have to tell the target from clutter."""
 
-    version = 5
+    version = 6
     takes = "scan_model"
     runs_together = 200
     gate: Positive = 9.21
@@ -79,6 +79,10 @@ class AssociationFilter(_Validating):
     truth (nothing that one could use)."""
     relinearised_s: Positive | None = None
     """With `linearised: start`, move to the estimate every so often."""
+    process_noise: Literal["stated", "stated_or_more"] = "stated"
+    """With `stated_or_more`, three times the stated one is taken to be as likely before the data:
+    the estimate is the mixture of both, and errors stay within their sigmas where more is at work
+    than the data can tell; they are a few percent larger where it is not."""
 
     @property
     def uses_truth(self) -> bool:
@@ -99,6 +103,7 @@ class AssociationFilter(_Validating):
             stacked=self.stacked,
             relinearise=self._every(given.clock.step),
             truth=given.known_truth if self.linearised == "truth" else None,
+            restless=self.process_noise == "stated_or_more",
             keep=kept_epochs(self.keep_s, given.clock),
         )
         certain, once = self.method == "nearest", self._every(1.0) == 0
@@ -130,7 +135,7 @@ class KnownAssociation(FilterPart):
     """The extended Kalman filter that is handed the target's own detections."""
 
     takes = "scan_model"
-    version = 3
+    version = 4
     runs_together = 200
     kind: Literal["known_association"]
     keep_s: KeptTimes = []
@@ -177,13 +182,17 @@ def _unlabelled(
 
 
 def _scores(model: ScanModel, found: Estimates) -> Iterator[SelfTest]:
-    """What the innovations go with: each doubt, and more process noise than the model has."""
+    """What the innovations go with: the doubts, and more process noise than the model has."""
     counts = found.counts
+    score, information = counts["score"], counts["information"]
+    stated = np.diagonal(information, 0, -2, -1)
     with np.errstate(all="ignore"):
-        size = counts["score"] / counts["information"]
-        sigma = score_sigma(counts["square"], counts["information"]) / counts["information"]
-    for i, doubt in enumerate(model.doubts):
-        yield score_test(size[:, i], sigma[:, i], doubt.reason, doubt.scale)
+        sigma = score_sigma(counts["square"], information)
+        for i, doubt in enumerate(model.doubts):
+            size = score[:, i] / stated[:, i]
+            yield score_test(size, sigma[:, i] / stated[:, i], doubt.reason, doubt.scale)
+        if model.doubts:
+            yield scores_test(score / sigma, score_correlation(information))
     yield agitation_test(log_ratio(counts["likelihood"]))
 
 
