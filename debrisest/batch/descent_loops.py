@@ -3,6 +3,7 @@
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
+from debrisest.attitude.rotation_loops import product
 from debrisest.batch.arc_loops import along, derivatives
 from debrisest.batch.point_loops import normal
 from debrisest.compiled import compiled
@@ -109,18 +110,11 @@ def _copies(arc: Arcs, step: Array) -> tuple[Array, Array, Array]:
 @compiled
 def _displaced(arc: Arcs, error: Array) -> Arcs:
     """The arc moved by an error (11)."""
-    (w, x, y, z), angle = arc[0], np.sqrt(np.sum(error[:3] ** 2))
-    scale = 0.5 if angle == 0.0 else np.sin(0.5 * angle) / angle
-    a, (b, c, d) = np.cos(0.5 * angle), scale * error[:3]
-    q = np.array(
-        [
-            a * w - b * x - c * y - d * z,
-            a * x + b * w + c * z - d * y,
-            a * y - b * z + c * w + d * x,
-            a * z + b * y - c * x + d * w,
-        ]
-    )
-    return q, arc[1] + error[3:6], arc[2] + error[6:]
+    angle = np.sqrt(np.sum(error[:3] ** 2))
+    turn = np.empty(4)
+    turn[0] = np.cos(0.5 * angle)
+    turn[1:] = (0.5 if angle == 0.0 else np.sin(0.5 * angle) / angle) * error[:3]
+    return product(turn, arc[0]), arc[1] + error[3:6], arc[2] + error[6:]
 
 
 @compiled
