@@ -19,7 +19,7 @@ from debrisest.dynamics.torque_free import torque_free
 
 TURN, RATE, INERTIA = slice(0, 3), slice(3, 6), slice(6, 11)
 UNKNOWNS = 11
-_TURN_OF_STEP = 2e-5
+TURN_OF_STEP = 2e-5
 """How far a difference's step turns the body at the end of the arc, about, rad."""
 
 
@@ -139,5 +139,5 @@ def _steps(arc: Arc, times: Array) -> Array:
     span = 1.0 + np.abs(times - arc.epoch).max(initial=0.0)
     turned = 1.0 + np.linalg.norm(arc.rate, axis=-1) * span
     result = np.empty((*turned.shape, 8))
-    result[..., :3], result[..., 3:] = _TURN_OF_STEP / span, _TURN_OF_STEP / turned[..., None]
+    result[..., :3], result[..., 3:] = TURN_OF_STEP / span, TURN_OF_STEP / turned[..., None]
     return result

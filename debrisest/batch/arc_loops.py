@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.attitude.rotation_loops import matrix_of
+from debrisest.attitude.rotation_loops import conjugate, matrix_of, product
 from debrisest.compiled import compiled
 from debrisest.dynamics.torque_free_loops import at, body_of
 
@@ -59,11 +59,11 @@ def _one(times: Array, q0: Array, rate0: Array, matrix: Array, q_if: Array, rate
     unit, by = np.zeros(4), np.empty((4, 4))
     at(np.zeros(1), body, rate, about)
     unit[0], unit[1 + body[-1]] = about[0, 0], about[1:, 0]
-    left = _product(_product(q0, q_fb), _conjugate(unit)) / np.sum(unit**2)
+    left = product(product(q0, q_fb), conjugate(unit)) / np.sum(unit**2)
     for k in range(4):
         unit[:] = 0.0
         unit[0 if k == 0 else 1 + body[-1][k - 1]] = 1.0
-        by[:, k] = _product(_product(left, unit), _conjugate(q_fb))
+        by[:, k] = product(product(left, unit), conjugate(q_fb))
     at(times, body, rate, about)
     for i in range(4):
         a, b, c, d = by[i]
@@ -85,7 +85,7 @@ def _principal(matrix: Array) -> tuple[Array, Array]:
         for i in range(3):
             j = (i + 1) % 3
             if a[i, j] != 0.0:
-                q_fb = _product(q_fb, _rotated(a, i, j))
+                q_fb = product(q_fb, _rotated(a, i, j))
     return np.exp(np.diag(a)), q_fb / math.sqrt(np.sum(q_fb**2))
 
 
@@ -104,21 +104,3 @@ def _rotated(a: Array, i: int, j: int) -> Array:
     turn[0] = math.sqrt(0.5 + 0.5 * cos)
     turn[1 + (j + 1) % 3] = -0.5 * sin / turn[0]
     return turn
-
-
-@compiled
-def _product(p: Array, q: Array) -> Array:
-    """Hamilton product of two quaternions (4)."""
-    return np.array(
-        [
-            p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-            p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-            p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
-            p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
-        ]
-    )
-
-
-@compiled
-def _conjugate(q: Array) -> Array:
-    return np.array([q[0], -q[1], -q[2], -q[3]])

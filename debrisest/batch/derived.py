@@ -4,7 +4,6 @@ All that depends on principal axes is undefined where two moments are too close 
 tell them apart: such numbers are NaN, and the sigma of the axis says why.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +20,7 @@ LOOSEST_AXIS = np.radians(10.0)
 _LOOSEST_SHARE = 0.5  # sigma of a number over itself
 _SIDES = ((1, 2), (2, 0), (0, 1))  # about which a principal axis pair turns
 _STEP = 1e-6
+_BOTH = np.eye(UNKNOWNS), -np.eye(UNKNOWNS)
 _LEAST_GAP = 1e-12
 
 
@@ -61,44 +61,39 @@ def derived(arc: Arc, covariance: Array) -> Derived:
     tilt = _axis_sigmas(moments, axes, covariance)
     lost = lost_directions(covariance) > 0
     vague = (tilt > LOOSEST_AXIS) | (lost & (tilt > 0.1 * LOOSEST_AXIS))
-    shares, share_sigma = _spread(arc, covariance, _shares)
-    rates, rate_sigma = _spread(arc, covariance, lambda moved: _axis_rates(moved, axes))
-    nutates, nutate_sigma = _spread(arc, covariance, _nutation)
+    beside = displaced(arc, _STEP * np.concatenate([np.zeros((1, UNKNOWNS)), *_BOTH]))
+    shares, share_sigma = _spread(_shares(beside), covariance)
+    rates, rate_sigma = _spread(_axis_rates(beside, axes), covariance)
+    nutates, nutate_sigma = _spread(_nutation(beside), covariance)
     shown = share_sigma < _LOOSEST_SHARE * np.abs(shares)
     unsure = ~(nutate_sigma < _LOOSEST_SHARE * np.abs(nutates))
     return Derived(
         Quantity(np.where(vague, np.nan, axes), tilt),
         Quantity(np.where(shown & ~lost, shares, np.nan), share_sigma),
         Quantity(np.where(vague, np.nan, rates), rate_sigma),
-        _direction(arc, covariance, _momentum),
-        _direction(arc, covariance, lambda moved: quaternion.rotate(moved.q, moved.rate)),
-        Quantity(*_spread(arc, covariance, _speed)),
+        _direction(_momentum(beside), covariance),
+        _direction(quaternion.rotate(beside.q, beside.rate), covariance),
+        Quantity(*_spread(np.linalg.norm(beside.rate, axis=-1, keepdims=True), covariance)),
         Quantity(np.where(unsure, np.nan, nutates)[:1], nutate_sigma[:1]),
         Quantity(np.where(unsure, np.nan, nutates)[1:], nutate_sigma[1:]),
     )
 
 
-def _spread(arc: Arc, covariance: Array, of: Callable[[Arc], Array]) -> tuple[Array, Array]:
-    """Return a function of the arc and its standard deviations, by central differences."""
-    derivative = np.stack(
-        [
-            (of(displaced(arc, step)) - of(displaced(arc, -step))) / (2.0 * _STEP)
-            for step in _STEP * np.eye(UNKNOWNS)
-        ],
-        axis=-1,
-    )
+def _spread(values: Array, covariance: Array) -> tuple[Array, Array]:
+    """Return numbers and their standard deviations, by central differences.
+
+    ``values (arc, n)`` are those of the arc, and of arcs beside it, ahead and behind.
+    """
+    ahead, behind = np.split(values[1:], 2)
+    derivative = ((ahead - behind) / (2.0 * _STEP)).T
     variance = np.sum((derivative @ covariance) * derivative, axis=-1)
-    return of(arc), np.sqrt(np.maximum(variance, 0.0))
+    return values[0], np.sqrt(np.maximum(variance, 0.0))
 
 
-def _direction(arc: Arc, covariance: Array, of: Callable[[Arc], Array]) -> Quantity:
+def _direction(vectors: Array, covariance: Array) -> Quantity:
     """Return a unit vector and the sigma of its components, NaN if the angle is large."""
-
-    def unit(moved: Arc) -> Array:
-        vector = of(moved)
-        return np.asarray(vector / max(float(np.linalg.norm(vector)), 1e-300))
-
-    value, sigma = _spread(arc, covariance, unit)
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    value, sigma = _spread(vectors / np.maximum(length, 1e-300), covariance)
     sure = np.linalg.norm(sigma) < LOOSEST_AXIS
     return Quantity(value if sure else np.full(3, np.nan), sigma)
 
@@ -120,29 +115,30 @@ def _axis_sigmas(moments: Array, axes: Array, covariance: Array) -> Array:
 
 def _shares(arc: Arc) -> Array:
     moments = np.linalg.eigvalsh(log_inertia.inertia(arc.log_inertia))
-    return np.asarray(moments / moments[-1])
+    return np.asarray(moments / moments[..., -1:])
 
 
 def _axis_rates(arc: Arc, near: Array) -> Array:
     """Rates about the principal axes, with the signs of axes that are near to given ones."""
     _, axes = np.linalg.eigh(log_inertia.inertia(arc.log_inertia))
-    signs = np.sign(np.sum(axes * near, axis=0))
-    return np.asarray((axes * signs).T @ arc.rate)
+    signs = np.sign(np.sum(axes * near, axis=-2))
+    return np.asarray(signs * _in_axes(axes, arc.rate))
 
 
-def _speed(arc: Arc) -> Array:
-    return np.array([np.linalg.norm(arc.rate)])
+def _in_axes(axes: Array, vector: Array) -> Array:
+    return np.asarray((np.swapaxes(axes, -1, -2) @ vector[..., None])[..., 0])
 
 
 def _momentum(arc: Arc) -> Array:
-    body = log_inertia.inertia(arc.log_inertia) @ arc.rate
+    body = (log_inertia.inertia(arc.log_inertia) @ arc.rate[..., None])[..., 0]
     return quaternion.rotate(arc.q, body)
 
 
 def _nutation(arc: Arc) -> Array:
     """Angle between the momentum and the circled axis, rad, and the period, s."""
     moments, axes = np.linalg.eigh(log_inertia.inertia(arc.log_inertia))
-    motion = nutation(axes.T @ arc.rate, moments)
-    circled, *across = np.abs(motion.momentum0)
-    circled /= max(float(np.linalg.norm([circled, *across])), 1e-300)
-    return np.array([np.arccos(np.clip(circled, 0.0, 1.0)), 2.0 * motion.period[0]])
+    motion = nutation(_in_axes(axes, arc.rate), moments)
+    momentum = np.abs(motion.momentum0)
+    length = np.maximum(np.linalg.norm(momentum, axis=-1), 1e-300)
+    angle = np.arccos(np.clip(momentum[..., 0] / length, 0.0, 1.0))
+    return np.stack([angle, 2.0 * motion.period[..., 0]], axis=-1)

@@ -9,8 +9,19 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.batch.arc import INERTIA, UNKNOWNS, Arc, along, chosen, course, displaced, stacked
+from debrisest.batch.arc import (
+    INERTIA,
+    TURN_OF_STEP,
+    UNKNOWNS,
+    Arc,
+    along,
+    chosen,
+    course,
+    displaced,
+    stacked,
+)
 from debrisest.batch.evidence import Evidence, Normal
 
 PRIOR_SIGMA = 0.8
@@ -63,11 +74,33 @@ def descend_all(
 
     A descent ends where its next step would lower the chi-square by less than ``least_gain``.
     """
-    walks = _Walks(evidence, stacked(arcs), held or [NOTHING_ELSE] * len(arcs))
+    held = held or [NOTHING_ELSE] * len(arcs)
+    if evidence.of_known_points is not None and compiled.available():
+        return _descended(evidence, stacked(arcs), held, iterations, least_gain)
+    walks = _Walks(evidence, stacked(arcs), held)
     for _ in range(iterations):
         if not walks.go_on(least_gain):
             break
     return walks.ends()
+
+
+def _descended(
+    evidence: Evidence, arcs: Arc, held: Sequence[Prior], iterations: int, least_gain: float
+) -> list[Descent]:
+    """The same by compiled loops, on known points."""
+    from debrisest.batch.descent_loops import descents
+
+    assert evidence.of_known_points is not None
+    product, hold, squares = evidence.of_known_points
+    told = evidence.times - arcs.epoch, product, hold, float(squares.sum())
+    settings = least_gain, PRIOR_SIGMA, _WIDEST, _LEAST_DAMPING, _MOST_DAMPING, TURN_OF_STEP
+    centre, information = (np.stack(parts) for parts in zip(*held))
+    prior = centre, information
+    chi2, holds, settled = descents(told, arcs[1:], prior, iterations, settings)
+    return [
+        Descent(chosen(arcs, k), float(chi2[k]), holds[k], bool(settled[k]))
+        for k in range(len(chi2))
+    ]
 
 
 class _Walks:

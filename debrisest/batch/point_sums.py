@@ -59,6 +59,11 @@ class KnownPoints:
         trace = np.trace(spread, axis1=-2, axis2=-1)[..., None, None]
         return np.swapaxes(measured, -1, -2) @ weighted, trace * np.eye(3) - spread, squares
 
+    @property
+    def of_known_points(self) -> tuple[Array, Array, Array]:
+        """The sums."""
+        return self.sums
+
     def told(self, q: Array, rate: Array, epochs: Epochs = slice(None)) -> Told:
         """Return what the epochs say at attitudes (..., 4); rates do not matter."""
         product, hold, squares = (part[epochs] for part in self.sums)

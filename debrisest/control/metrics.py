@@ -47,12 +47,15 @@ def section_metrics(
     ended = has & ~epochs[:, -1]
     next_one = np.where(ended, first + count, 0)
     fine = step / pointing.stage.shape[2]
-    ran = epochs[:, :, None, None] & ~np.isnan(pointing.stage)
-    torque = _flat(np.where(ran[..., None], pointing.torque, np.nan))
-    tracks = _flat(ran & (pointing.stage == TRACKING))
-    far = ~(np.abs(_flat(pointing.control_pixel) - desired).max(-1) <= SETTLED)
+    some = _spanned(epochs)
+    stage = pointing.stage[:, some]
+    ran = epochs[:, some, None, None] & ~np.isnan(stage)
+    torque = _flat(np.where(ran[..., None], pointing.torque[:, some], np.nan))
+    tracks = _flat(ran & (stage == TRACKING))
+    far = ~(np.abs(_flat(pointing.control_pixel[:, some]) - desired).max(-1) <= SETTLED)
     stage_one = fine * tracks.sum(1)
-    settling = _time_of_last(tracks & far, fine) - first[:, None] * step
+    before = some.start * pointing.stage.shape[2]
+    settling = _time_of_last(tracks & far, fine, before) - first[:, None] * step
     settles = (stage_one > 0.0) & (settling < stage_one - 0.5 * fine)
     size, steps = np.abs(torque), np.abs(np.diff(torque, axis=1))
     return SectionMetrics(
@@ -66,6 +69,12 @@ def section_metrics(
     )
 
 
+def _spanned(epochs: BoolArray) -> slice:
+    """Epochs in which any of the runs (run, time) is in the section; the first, if none ever is."""
+    within = np.flatnonzero(epochs.any(0))
+    return slice(int(within[0]), int(within[-1]) + 1) if len(within) else slice(0, 1)
+
+
 def _if(there: BoolArray, values: Array) -> Array:
     return np.where(there, values, np.nan)
 
@@ -75,8 +84,11 @@ def _flat(history: Array) -> Array:
     return history.reshape(len(history), -1, *history.shape[3:])
 
 
-def _time_of_last(true: BoolArray, step: float) -> Array:
-    """End of the last control step (run, satellite) that is marked; zero where none is."""
-    count = true.shape[1]
+def _time_of_last(true: BoolArray, step: float, before: int) -> Array:
+    """End of the last control step (run, satellite) that is marked; zero where none is.
+
+    So many steps come ``before`` the first.
+    """
+    count = before + true.shape[1]
     from_end = true[:, ::-1].argmax(1)
     return np.where(true.any(1), (count - from_end) * step, 0.0)

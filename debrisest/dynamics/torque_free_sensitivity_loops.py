@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
+from debrisest.attitude.rotation_loops import conjugate, product
 from debrisest.compiled import compiled
 from debrisest.dynamics.torque_free_loops import at, body_of
 
@@ -64,9 +65,9 @@ def _motion(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[Arra
     axes = np.array([0, 1 + order[0], 1 + order[1], 1 + order[2]])
     first, by = np.empty(4), np.empty((4, 4))
     first[axes] = about[:, 0] / np.sum(about[:, 0] ** 2)
-    left = _multiplied(q0, np.array([first[0], -first[1], -first[2], -first[3]]))
+    left = product(q0, conjugate(first))
     for i in range(4):
-        by[:, i] = _multiplied(left, np.eye(4)[axes[i]])
+        by[:, i] = product(left, np.eye(4)[axes[i]])
     q, rate = np.zeros((count, 4)), np.empty((count, 3))
     for t in range(count):
         for i in range(4):
@@ -75,20 +76,6 @@ def _motion(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[Arra
         for i in range(3):
             rate[t, order[i]] = ordered[i, t]
     return q, rate
-
-
-@compiled
-def _multiplied(p: Array, q: Array) -> Array:
-    a, b, c, d = p
-    w, x, y, z = q
-    return np.array(
-        [
-            a * w - b * x - c * y - d * z,
-            a * x + b * w + c * z - d * y,
-            a * y - b * z + c * w + d * x,
-            a * z + b * y - c * x + d * w,
-        ]
-    )
 
 
 @compiled

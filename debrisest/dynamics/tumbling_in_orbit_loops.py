@@ -47,7 +47,7 @@ def rotation(
             new[:], tried[:] = x, x
             total[:], at[:] = now, now
             for i in range(4):
-                _slopes(tried, body, pace, turn, spin, radial, vectors)
+                slopes(tried, body, pace, turn, spin, radial, vectors)
                 _variation(tried[4:], radial, spin, body, pace[1], at, by, vectors, room)
                 part, weight = _PARTS[i] * duration, _WEIGHTS[i] * duration / 6.0
                 for a in range(7):
@@ -63,7 +63,7 @@ def rotation(
 
 
 @compiled
-def _slopes(
+def slopes(
     x: Array,
     body: tuple[Array, Array, Array],
     pace: tuple[float, float],

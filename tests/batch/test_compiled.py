@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from debrisest import compiled
+from debrisest.attitude import quaternion
 from debrisest.batch import arc as arcs
-from debrisest.batch.arc import Arc, along, course
+from debrisest.batch.arc import Arc, along, course, displaced
+from debrisest.batch.descent import NOTHING_ELSE, Prior, covariance, descend_all
 from debrisest.batch.point_sums import KnownPoints
+from debrisest.batch.spread import shift
 from debrisest.batch.tracks import tracks
 
 pytest.importorskip("numba")
@@ -83,3 +86,35 @@ def test_normal_equations_of_points_are_the_same(monkeypatch: pytest.MonkeyPatch
     motions = course(drawn(4, 0.3), TIMES)
     for fast, slow in zip(*both(monkeypatch, evidence.normal, motions)):
         np.testing.assert_allclose(fast, slow, atol=1e-12 * np.abs(slow).max())
+
+
+def seen_of(arc: Arc, noise: float) -> KnownPoints:
+    """Return six points of a body that moves so, of which a third is not seen."""
+    draws = np.random.default_rng(5)
+    body = draws.normal(size=(6, 3))
+    points = body @ np.swapaxes(quaternion.to_matrix(along(arc, TIMES)[0]), -1, -2)
+    points += noise * draws.normal(size=points.shape)
+    points[draws.random(points.shape[:2]) < 0.3] = np.nan
+    return KnownPoints(tracks(TIMES, points, noise), body)
+
+
+def test_descents_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of starts near and far, free and held, one of them no body."""
+    truth = Arc(20.0, np.array([0.5, 0.5, 0.5, 0.5]), np.array([0.02, 0.01, -0.015]), np.zeros(5))
+    truth = truth._replace(log_inertia=np.array([0.2, 0.1, 0.0, -0.1, 0.05]))
+    evidence, draws = seen_of(truth, 0.05), np.random.default_rng(6)
+    errors = np.repeat([1e-4, 1e-5, 1e-3], [3, 3, 5]) * draws.normal(size=(4, 11))
+    starts = [displaced(truth, error) for error in errors]
+    starts[1] = starts[1]._replace(rate=2.0 * starts[1].rate)
+    starts[2] = starts[2]._replace(log_inertia=np.full(5, 4.0))
+    held = [NOTHING_ELSE] * 3 + [Prior(np.full(5, 0.05), 1e4 * np.eye(5))]
+    fast, slow = both(monkeypatch, descend_all, evidence, starts, 30, held)
+    sigma = np.sqrt(np.diag(covariance(slow[0].hold)))
+    for one, other, near in zip(fast, slow, (True, False, True, True)):
+        assert (one.settled, np.isfinite(one.chi2)) == (other.settled, np.isfinite(other.chi2))
+        if near:
+            np.testing.assert_array_less(np.abs(shift(one.arc, other.arc)), 1e-4 * sigma)
+            np.testing.assert_allclose(one.chi2, other.chi2, rtol=1e-10)
+            np.testing.assert_allclose(one.hold, other.hold, atol=1e-5 * np.abs(other.hold).max())
+    assert slow[0].settled and slow[3].settled
+    assert np.isinf(slow[2].chi2)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from debrisest import compiled
-from debrisest.problems.camera_range import model
+from debrisest.problems.camera_range import model, redundant_model
 
 pytest.importorskip("numba")
 
@@ -27,3 +27,22 @@ def test_rotation_is_the_same(monkeypatch: pytest.MonkeyPatch, gravity: bool, co
         found.append(model._rotation(known, core, 200, count))
     for fast, slow in zip(*found):
         np.testing.assert_allclose(fast, slow, atol=1e-12 * np.abs(slow).max())
+
+
+def test_sigma_points_of_the_redundant_model_move_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Some share their core with the first one, and a camera stands below the orbit."""
+    draws = np.random.default_rng(4)
+    state = np.zeros((3, 7, redundant_model.CORE + 24))
+    state[..., :7] = draws.normal(size=(3, 7, 7))
+    state[..., redundant_model.RATE] *= 0.02
+    state[..., redundant_model.POSITION] = draws.normal([5.0, 17.0, -6.0], size=(3, 7, 3))
+    state[..., redundant_model.VELOCITY] = 0.01 * draws.normal(size=(3, 7, 3))
+    state[..., redundant_model.INERTIA] = [135.0, 208.0, 260.0, 5.0, -3.0, 8.0]
+    state[:, 3:, : redundant_model.CORE] = state[:, :1, : redundant_model.CORE]
+    state[..., redundant_model.CORE :] = draws.normal(size=(3, 7, 24))
+    known = redundant_model.CameraGeometry(points=4, mean_motion=1e-3, step=5.0, focal_px=1000.0)
+    found = []
+    for fast in (True, False):
+        monkeypatch.setattr(compiled, "available", lambda fast=fast: fast)
+        found.append(redundant_model.process(known, state))
+    np.testing.assert_allclose(*found, atol=1e-12 * np.abs(found[1]).max())

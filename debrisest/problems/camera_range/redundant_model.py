@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.dynamics.clohessy_wiltshire import transition
@@ -96,6 +97,8 @@ def process(known: CameraGeometry, state: Array) -> Array:
     """
     if state.ndim != 3:
         return _moved(known, state[..., None, :], state[..., None, :])[..., 0, :]
+    if compiled.available():
+        return _moved_compiled(known, state)
     core = state[..., :CORE]
     own = np.append(True, (core[:, 1:] != core[:, :1]).any((0, 2)))
     result = np.empty_like(state)
@@ -103,6 +106,13 @@ def process(known: CameraGeometry, state: Array) -> Array:
     if not own.all():
         result[:, ~own] = _moved(known, state[:, None, 0], state[:, ~own])
     return result
+
+
+def _moved_compiled(known: CameraGeometry, state: Array) -> Array:
+    from debrisest.problems.camera_range.redundant_loops import moved
+
+    pace = known.mean_motion, 3.0 * known.mean_motion**2
+    return moved(state, transition(known.mean_motion, known.step), pace, known.step)
 
 
 def _moved(known: CameraGeometry, leader: Array, state: Array) -> Array:
