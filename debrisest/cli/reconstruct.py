@@ -128,7 +128,8 @@ def _thinned(images: Path) -> int:
 
 def _masks_of(images: Path) -> Path | None:
     """Return where masks of images are, and say it; None where there are none."""
-    from debrisest.vision.image_files import count_images, has_masks
+    from debrisest.vision.image_files import count_images
+    from debrisest.vision.image_names import has_masks
 
     if not images.is_dir():
         return None

@@ -15,7 +15,8 @@ from debrisest.cli.app import app
 from debrisest.cli.reconstruct import _thinned
 from debrisest.errors import UserError
 from debrisest.reconstruction.mesh_files import read_mesh
-from debrisest.vision.image_files import has_masks, read_images
+from debrisest.vision.image_files import read_images
+from debrisest.vision.image_names import has_masks
 from debrisest.vision.masks import read_masks
 from tests.vision.conftest import Scene
 
@@ -126,6 +127,20 @@ def test_masks_in_a_folder_of_their_own_tell_the_body(
     code, output = said(folder)
     assert code == 0
     assert f"note: the masks in {folder / 'masks'} tell the body" in output
+    assert line(output, "outline") == "the masks that were given"
+
+
+def test_the_opacity_of_cut_out_images_is_their_mask(
+    tmp_path: Path, box: Data, photographs: Photographs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("debrisest.reconstruction.body._CELLS", (24, 40))
+    folder = tmp_path / "box"
+    folder.mkdir()
+    for number, (frame, shown) in enumerate(zip(box["measured_image"][0, :, 0], photographs)):
+        opaque = np.where(frame > 12, np.uint8(255), np.uint8(0))
+        Image.fromarray(np.dstack([shown, opaque])).save(folder / f"p{number + 1}.png")
+    code, output = said(folder)
+    assert code == 0
     assert line(output, "outline") == "the masks that were given"
 
 

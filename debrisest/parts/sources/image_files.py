@@ -17,7 +17,8 @@ from debrisest.tracks.camera_places import read_places
 from debrisest.tracks.types import Camera
 from debrisest.tracks.write_calibration import camera_matrix
 from debrisest.vision.focal_length import first_focal
-from debrisest.vision.image_files import SUFFIXES, TIMES, ImageSequence, read_images
+from debrisest.vision.image_files import ImageSequence, read_images
+from debrisest.vision.image_names import SUFFIXES, TIMES
 from debrisest.vision.masks import read_masks
 
 _COEFFICIENTS, _FEWEST = 5, 3
@@ -51,12 +52,14 @@ class MeasuredImages(SourcePart):
     masks: str | None = None
     """A folder of masks, white where the body is, one for each image, in the order of the numbers
     in their names; the folder of the images itself, where names of masks end in `mask`. None: the
-    body is told by what is behind it."""
+    opacity of the images, or, where they have none, the body is told by what is behind it."""
 
     def read(self, folder: Path) -> Data:
         """Return images with their times, and what is known of the cameras."""
-        images = read_images(folder / self.folder, self.widest_px, gaps=True, colours=True)
-        times = self._times(images)[:: self.every]
+        images = read_images(
+            folder / self.folder, self.widest_px, gaps=True, colours=True, every=self.every
+        )
+        times = self._times(images)
         if len(times) < _FEWEST:
             told = "one image" if len(times) == 1 else f"{len(times)} images"
             raise UserError(f"{images.source}: {told}; a body that turns needs {_FEWEST}, or more")
@@ -64,15 +67,15 @@ class MeasuredImages(SourcePart):
         return {
             "run": np.zeros(1),
             "time_s": times - times[0],
-            "measured_image": images.frames[None, :: self.every],
-            **{k: each[None, :: self.every] for k, each in seen.items() if each is not None},
+            "measured_image": images.frames[None],
+            **{k: each[None] for k, each in seen.items() if each is not None},
             **self._cameras(folder, images),
         }
 
     def _masks(self, folder: Path, images: ImageSequence) -> NDArray[np.uint8] | None:
         if self.masks is None:
-            return None
-        return read_masks(folder / self.masks, images, self.widest_px)
+            return images.opacity
+        return read_masks(folder / self.masks, images, self.widest_px, self.every)
 
     def _cameras(self, folder: Path, images: ImageSequence) -> Data:
         if self.camera is None:
@@ -90,8 +93,8 @@ class MeasuredImages(SourcePart):
         matrix = found.matrix
         focal, centre = (matrix[0, 0], matrix[1, 1]), (matrix[0, 2], matrix[1, 2])
         return _one_camera(_matrix(Camera("camera", focal, centre), images.reduced)) | {
-            "given_rotation": found.rotation[None, :: self.every],
-            "given_translation": found.translation[None, :: self.every],
+            "given_rotation": found.rotation[None],
+            "given_translation": found.translation[None],
             "focal_spread": np.zeros(1),
             "focal_source": np.array([f"the places {path.name}"]),
         }
@@ -142,9 +145,10 @@ class MeasuredImages(SourcePart):
         return whole.hexdigest()
 
     def _times(self, images: ImageSequence) -> Array:
+        number = self.every * np.arange(float(len(images.frames)))
         if self.rate_hz is not None:
-            return np.arange(len(images.frames)) / self.rate_hz
-        return np.arange(float(len(images.frames))) if images.times is None else images.times
+            return number / self.rate_hz
+        return number if images.times is None else images.times
 
 
 def _one_camera(matrix: Array) -> Data:
