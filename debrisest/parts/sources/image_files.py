@@ -38,9 +38,9 @@ class MeasuredImages(SourcePart):
     """A folder of images (of a pair: with `left` and `right` in it), or a video file."""
     camera: str | None = None
     """Calibration in OpenCV's YAML, which a pair needs; or a text file with the matrix, rotation
-    and translation of each image of one camera (`name K R t`, or `name P`), which give the scale
-    too. None: that of one camera follows from its images, with a start from EXIF or the field of
-    view."""
+    and translation of each image of one camera (`name K R t`, or `name P`), or a folder with a file
+    of such numbers for each image, which give the scale too. None: that of one camera follows from
+    its images, with a start from EXIF or the field of view."""
     field_of_view_deg: Annotated[float, Field(gt=1, lt=170)] | None = None
     """Across the longer side of an image, where nothing is calibrated; none: EXIF, or 50."""
     widest_px: int | None = Field(None, ge=64)
@@ -80,7 +80,8 @@ class MeasuredImages(SourcePart):
     def _cameras(self, folder: Path, images: ImageSequence) -> Data:
         if self.camera is None:
             return self._uncalibrated(images)
-        if Path(self.camera).suffix.lower() == _PLACES:
+        path = folder / self.camera
+        if path.is_dir() or path.suffix.lower() == _PLACES:
             return self._placed(folder, images)
         return self._known(folder, images)
 
@@ -133,12 +134,9 @@ class MeasuredImages(SourcePart):
 
     def digest(self, folder: Path) -> str:
         """Return the SHA-256 of all images and of the calibration."""
-        paths = [folder / each for each in (self.folder, self.masks) if each]
-        inside = [
-            one for path in paths for one in (sorted(path.rglob("*")) if path.is_dir() else [path])
-        ]
+        inside = [one for each in (self.folder, self.masks) if each for one in _in(folder / each)]
         used = [one for one in inside if one.suffix.lower() in SUFFIXES or one.name == TIMES]
-        files = [*(used or inside), *([folder / self.camera] if self.camera else [])]
+        files = [*(used or inside), *(_in(folder / self.camera) if self.camera else [])]
         whole = sha256()
         for file in files:
             whole.update(sha256(content(file)).digest())
@@ -149,6 +147,11 @@ class MeasuredImages(SourcePart):
         if self.rate_hz is not None:
             return number / self.rate_hz
         return number if images.times is None else images.times
+
+
+def _in(path: Path) -> list[Path]:
+    """Return a file, or those in a folder."""
+    return sorted(path.rglob("*")) if path.is_dir() else [path]
 
 
 def _one_camera(matrix: Array) -> Data:
