@@ -77,7 +77,7 @@ def _nothing(folder: Path) -> str:
     """Return in words why there is no image to read."""
     raw = sum(one.suffix.lower() in _RAW for one in folder.iterdir())
     if raw:
-        return f"{raw} images as cameras and phones keep them; export them to a kind that is read"
+        return f"{raw} as cameras and phones keep images; export them to a kind that is read"
     inside = next((one for one in folder.iterdir() if one.is_dir() and _has_images(one)), None)
     return "no images there" if inside is None else f"no images there; are those in {inside} meant?"
 

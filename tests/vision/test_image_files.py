@@ -99,7 +99,7 @@ def test_the_opacity_of_images_is_kept(tmp_path: Path, kind: type[np.integer]) -
 
 def test_what_is_no_folder_of_images_is_told(tmp_path: Path) -> None:
     (tmp_path / "IMG_1.HEIC").write_bytes(b"as a telephone keeps it")
-    with pytest.raises(UserError, match="1 images as cameras and phones keep them; export them"):
+    with pytest.raises(UserError, match="1 as cameras and phones keep images; export"):
         read_images(tmp_path)
     write_images(tmp_path / "above" / "images", sequence(("camera",)))
     with pytest.raises(UserError, match=r"no images there; are those in .*images meant\?"):
