@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from debrisest.arrays import Data
 from debrisest.attitude import quaternion
 from debrisest.cli.app import app
-from debrisest.cli.reconstruct import _thinned
+from debrisest.cli.images_scenario import thinned
 from debrisest.errors import UserError
 from debrisest.reconstruction.mesh_files import read_mesh
 from debrisest.vision.image_files import read_images
@@ -237,10 +237,10 @@ def test_of_many_images_one_of_several_is_taken_and_said(
 ) -> None:
     for number in range(151):
         (tmp_path / f"viff.{number:03d}.ppm").write_bytes(b"")
-    assert _thinned(tmp_path) == 3
+    assert thinned(tmp_path) == 3
     assert "one of 3 of the 151 images is taken; --every 1" in capsys.readouterr().out
     (tmp_path / "viff.150.ppm").unlink()
-    assert _thinned(tmp_path) == 2
+    assert thinned(tmp_path) == 2
 
 
 @pytest.mark.parametrize("suffix", ["ppm", "pgm", "tif", "webp"])

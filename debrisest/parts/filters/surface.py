@@ -14,11 +14,11 @@ from debrisest.reconstruction.body import (
     LEAST_GUESSED,
     Body,
     Method,
-    Outline,
     Support,
     reconstructed_body,
 )
 from debrisest.reconstruction.error_bars import packed
+from debrisest.reconstruction.outline_choice import Outline
 from debrisest.roles import FilterPart, Given
 
 _ON_TABLE = (
