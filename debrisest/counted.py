@@ -21,6 +21,10 @@ class Part(NamedTuple):
     done: int
     total: int
 
+    def __str__(self) -> str:
+        """Return the step, if there is one, and what is counted."""
+        return f"{self.step}: {self.what}" if self.step else self.what
+
 
 Listener = Callable[[Part], None]
 _listener: ContextVar[Listener] = ContextVar("listener", default=lambda _: None)

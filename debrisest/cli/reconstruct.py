@@ -7,6 +7,7 @@ from typer import Argument, Option
 
 from debrisest.cli.estimate import relative_to, write_new
 from debrisest.cli.exits import exit_if
+from debrisest.cli.images_scenario import CALIBRATION, MOST, PLACES, masks_of, scenario_of, thinned
 from debrisest.cli.inputs import load_all
 from debrisest.cli.options import RESULTS, Force, Quiet, WidestPx
 from debrisest.cli.stages import bring
@@ -14,12 +15,6 @@ from debrisest.cli.stages import bring
 if TYPE_CHECKING:
     from debrisest.arrays import Data
     from debrisest.scenario.load import LoadedScenario
-
-_CALIBRATION = "calibration.yaml"
-_PLACES = "*_par.txt"
-_MASKS = ("masks", "mask", "silhouettes", "silhouette")
-_MOST = 75
-"""Images that are taken where nothing else is said: more cost hours and tell little more."""
 
 
 def reconstruct(
@@ -32,7 +27,7 @@ def reconstruct(
     ] = None,
     camera: Annotated[
         Path | None,
-        Option("--camera", help=f"Calibration (default: {_CALIBRATION}, or {_PLACES}, there)."),
+        Option("--camera", help=f"Calibration (default: {CALIBRATION}, or {PLACES}, there)."),
     ] = None,
     density_kg_m3: Annotated[float, Option("--density-kg-m3", help="Constant density.")] = 1000.0,
     mass_kg: Annotated[
@@ -52,7 +47,7 @@ def reconstruct(
     widest_px: WidestPx = 1280,
     every: Annotated[
         int | None,
-        Option("--every", min=1, help=f"Take one image of so many (default: {_MOST} at most)."),
+        Option("--every", min=1, help=f"Take one image of so many (default: {MOST} at most)."),
     ] = None,
     masks: Annotated[
         Path | None,
@@ -97,14 +92,14 @@ def reconstruct(
         }
     folder = out or RESULTS / given.resolve().stem
     keys: dict[str, Any] = {
-        "every": every or _thinned(given),
+        "every": every or thinned(given),
         "field_of_view_deg": field_of_view_deg,
         "widest_px": widest_px,
     }
-    masks = masks or _masks_of(given)
+    masks = masks or masks_of(given)
     if masks is not None:
         keys["masks"] = relative_to(folder, str(masks))
-    text = _scenario(given, camera, keys, problem, folder, no_support)
+    text = scenario_of(given, camera, keys, problem, folder, no_support)
     config = write_new(folder / f"{folder.name}.yaml", text, force)
     (scenario,) = load_all([config], None, None)
     data = _run(scenario, folder, force, quiet)
@@ -113,34 +108,6 @@ def reconstruct(
     for path in [config, *_files(scenario, folder, data)]:
         print(f"wrote {path}")
     exit_if(bool(data.get("failure")))
-
-
-def _thinned(images: Path) -> int:
-    """Return of how many images one is to be taken, and say it where it is not each."""
-    from debrisest.vision.image_files import count_images
-
-    count = count_images(images)
-    every = -(-count // _MOST)
-    if every > 1:
-        print(f"note: one of {every} of the {count} images is taken; --every 1 takes them all")
-    return max(every, 1)
-
-
-def _masks_of(images: Path) -> Path | None:
-    """Return where masks of images are, and say it; None where there are none."""
-    from debrisest.vision.image_files import count_images, has_masks
-
-    if not images.is_dir():
-        return None
-    places = [place / name for place in (images, images.parent) for name in _MASKS]
-    there = [place for place in places if place.is_dir() and place.resolve() != images.resolve()]
-    alike = [place for place in there if count_images(place) == count_images(images)]
-    found = images if has_masks(images) else next(iter(alike), None)
-    if found is not None:
-        print(f"note: the masks in {found} tell the body from what is behind it")
-    elif there:
-        print(f"note: {there[0]} has not a mask for each image, and is not taken")
-    return found
 
 
 def _require_positive(**values: float | None) -> None:
@@ -180,43 +147,6 @@ def _compare(data: "Data", reference: Path | None) -> None:
     density = float(data["body_mass"] / data["volume"])
     known = mesh_data(*read_mesh(reference), density, None)
     print("", *comparison(data, known, *body_mesh(data), *body_mesh(known)), sep="\n")
-
-
-def _scenario(
-    images: Path,
-    camera: Path | None,
-    keys: dict[str, Any],
-    problem: dict[str, Any],
-    folder: Path,
-    no_support: bool,
-) -> str:
-    """Return a scenario for ``folder`` as YAML."""
-    import yaml
-
-    from debrisest.errors import UserError
-
-    if not images.exists():
-        raise UserError(f"{images}: no such folder or file")
-    there = [place / _CALIBRATION for place in (images, images.parent)]
-    there += sorted(images.glob(_PLACES))
-    calibration = camera or next((path for path in there if path.is_file()), None)
-    measured = {"kind": "image_files", "folder": relative_to(folder, str(images))}
-    measured |= {key: value for key, value in keys.items() if value is not None}
-    if calibration is not None:
-        measured["camera"] = relative_to(folder, str(calibration))
-    surface = {"kind": "surface", "outline": "either"}
-    scenario = {
-        "title": f"Shape of the body in {images.name}",
-        "measured": measured,
-        "estimators": {
-            "shape": {
-                "recovery": {"kind": "structure_from_motion", "leave_out": "still_features"},
-                "problem": {"kind": "constant_density_shape", **problem},
-                "filter": surface | ({"support": "none"} if no_support else {}),
-            }
-        },
-    }
-    return yaml.safe_dump(scenario, sort_keys=False, allow_unicode=True)
 
 
 def _run(scenario: "LoadedScenario", folder: Path, force: bool, quiet: bool) -> "Data":

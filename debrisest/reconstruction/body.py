@@ -18,29 +18,26 @@ from debrisest.reconstruction.coverage import share_of_area, triangles_seen
 from debrisest.reconstruction.dense_cloud import OrientedCloud, dense_cloud
 from debrisest.reconstruction.depth import DepthView, depth_views
 from debrisest.reconstruction.error_bars import Doubts, depth_sigma, error_bars
-from debrisest.reconstruction.outlines import main_part, outlines
+from debrisest.reconstruction.outer import Outer
+from debrisest.reconstruction.outline_choice import Outline, outlined
 from debrisest.reconstruction.poisson import poisson_mesh
 from debrisest.reconstruction.silhouettes import Frames, Reading
 from debrisest.reconstruction.structure import Rig, Structure
-from debrisest.reconstruction.turntable import Table, lowered, support_of, table_under
+from debrisest.reconstruction.turntable import Table, support_of, table_under
 from debrisest.reconstruction.winding import pieces_of
 from debrisest.vision.polyhedron import MassProperties, mass_properties
 
 Method = Literal["poisson", "fusion"]
-Outline = Literal["silhouettes", "either"]
 Support = Literal["found", "none"]
-LEAST_COVERAGE = 0.8
-"""Of the surface, below which no number is given."""
+LEAST_COVERAGE, LEAST_GUESSED = 0.8, 0.6
+"""Of the surface: below the first numbers are guesses, below the second there are none."""
+_ANYWHERE = 3.0
+"""Thirds of its distance from the centre that a guess lets unseen surface be off."""
 _CELLS = (120, 200)
 """Cells along the body, of the coarse and of the fine surface."""
 _DEPTH = (6, 7)
 _NEAR = 0.025
 """Of the body's extent: how near a point of the cloud makes the surface a seen one."""
-_NEXT_PX = 2.0
-_AGREED, _AGREED_GIVEN = 0.8, 0.1
-"""Share of the structure's points that silhouettes must hold: most, and if they were given some,
-since a table that turns with the body has points too."""
-_BY_CLOUD = "the hull of the cloud, since silhouettes do not tell the body: hollows fill"
 _HULL_CELLS = 60
 
 
@@ -92,9 +89,9 @@ def reconstructed_body(
     table = support_of(whole) if on_table else None
     if table is not None:
         structure = whole.of(table.below(whole.points) < 0.0)
-    (masks, said, _), held = _outlined(frames, readings, rig, structure, outline)
+    (masks, said, _), held = outlined(frames, readings, rig, structure, outline)
     structure = structure.of(held)
-    outer = _Outer(masks[:, 0], rig.matrix[0], structure, table)
+    outer = Outer(masks[:, 0], rig.matrix[0], structure, table)
     views = depth_views(frames, masks, rig, structure if table is None else whole)
     extent = float(np.ptp(structure.points, axis=0).max())
     cells = [extent / count for count in _CELLS]
@@ -106,7 +103,8 @@ def reconstructed_body(
     share = _share_seen(mesh, coverage, outer.table, cells[1])
     factor, scale_sigma = _scale(mesh, structure, known_length, cells[1])
     coarse, mesh = (each._replace(vertices=factor * each.vertices) for each in (coarse, mesh))
-    doubts = Doubts(scale_sigma, factor * depth_sigma(views), 1.0 - share)
+    unseen = (1.0 - share) * (1.0 if share >= LEAST_COVERAGE else _ANYWHERE)
+    doubts = Doubts(scale_sigma, factor * depth_sigma(views), unseen)
     return Body(
         mesh=mesh,
         properties=mass_properties(mesh.vertices, mesh.triangles),
@@ -123,92 +121,7 @@ def reconstructed_body(
     )
 
 
-def _outlined(
-    frames: Frames,
-    readings: Sequence[Reading],
-    rig: Rig,
-    structure: Structure,
-    outline: Outline,
-) -> tuple[Reading, BoolArray]:
-    """Return silhouettes, and which points (point,) they hold."""
-    held = [
-        _Outer(one.masks[:, 0], rig.matrix[0], structure).holds(structure.points)
-        for one in readings
-    ]
-    if any(one.given for one in readings):
-        return _given(readings[0], held[0])
-    if outline == "silhouettes":
-        if held[0].mean() < _AGREED:
-            raise ValueError(
-                "the structure does not agree with the silhouettes, which hold "
-                f"{held[0].mean():.0%} of its points: images were placed wrongly; take more of "
-                "them, or larger ones"
-            )
-        return readings[0], held[0]
-    part = main_part(structure)
-    drawn = outlines(structure.of(part), rig.matrix[0], frames.shape[2:])
-    agree = [place for place, each in enumerate(held) if each.mean() >= _AGREED]
-    if not agree:
-        return Reading(np.repeat(drawn[:, None], frames.shape[1], axis=1), _BY_CLOUD), part
-    best = max(agree, key=lambda place: _overlap(readings[place].masks[:, 0], drawn))
-    return readings[best], held[best]
-
-
-def _given(reading: Reading, held: BoolArray) -> tuple[Reading, BoolArray]:
-    """Return masks that were given with the points they hold, or raise ValueError for too few."""
-    if held.mean() < _AGREED_GIVEN:
-        raise ValueError(
-            f"the masks hold {held.mean():.0%} of the structure's points: are they of these "
-            "images, in their order?"
-        )
-    return reading, held
-
-
-def _overlap(masks: BoolArray, drawn: BoolArray) -> float:
-    """Return the share of what either of two outlines holds that both do, where one is drawn."""
-    there = drawn.any(axis=(1, 2))
-    return float((masks & drawn)[there].sum() / (masks | drawn)[there].sum())
-
-
-class _Outer(NamedTuple):
-    """Silhouettes of the first camera (time, row, column), its matrix and its places; a table."""
-
-    masks: BoolArray
-    matrix: Array
-    structure: Structure
-    table: Table | None = None
-
-    def outside(self, points: Array | fusion.Values) -> fusion.Values:
-        """Return how far points (n, 3) lie outside of silhouettes, or below the table (n,), m."""
-        found = fusion.outside_silhouettes(points, self.masks, self.matrix, self.structure)
-        if self.table is None:
-            return found
-        return np.maximum(found, self.table.below(np.asarray(points, float)).astype(np.float32))
-
-    def on(self, table: Table | None) -> "_Outer":
-        """Return the same on a table, as low as the silhouettes let it be."""
-        if table is None:
-            return self
-        low = lowered(table, self.structure.points, self.outside, self.pixel)
-        return self._replace(table=low)
-
-    @property
-    def pixel(self) -> float:
-        """Return what a pixel makes at the body, m."""
-        away = self.structure.translation[self.structure.registered]
-        return float(np.median(np.linalg.norm(away, axis=1)) / self.matrix[0, 0])
-
-    def holds(self, points: Array) -> BoolArray:
-        """Return which points (n, 3) lie in the silhouettes, or next to them."""
-        return np.asarray(self.outside(points) < _NEXT_PX * self.pixel)
-
-    def volume(self, voxel: float) -> float:
-        """Return the volume of what all silhouettes share."""
-        grid = fusion.grid_about(self.structure.points, voxel)
-        return float((self.outside(grid.points) < 0.0).sum() * voxel**3)
-
-
-def _cloud(views: list[DepthView], outer: _Outer, cell: float) -> OrientedCloud:
+def _cloud(views: list[DepthView], outer: Outer, cell: float) -> OrientedCloud:
     """Return the dense cloud, as far as it lies in the silhouettes."""
     found = dense_cloud(views, cell)
     kept = outer.holds(found.points)
@@ -217,7 +130,7 @@ def _cloud(views: list[DepthView], outer: _Outer, cell: float) -> OrientedCloud:
     return OrientedCloud(found.points[kept], found.normals[kept])
 
 
-def _poisson(views: list[DepthView], outer: _Outer, cells: list[float]) -> list[ClosedMesh]:
+def _poisson(views: list[DepthView], outer: Outer, cells: list[float]) -> list[ClosedMesh]:
     clouds = [_cloud(views, outer, cell) for cell in cells]
     found = [poisson_mesh(cloud, depth) for cloud, depth in zip(clouds, _DEPTH)]
     return [closed_mesh(*_main_piece(*each)) for each in found]
@@ -229,7 +142,7 @@ def _main_piece(vertices: Array, triangles: IntArray) -> tuple[Array, IntArray]:
     return vertices, triangles[piece == np.bincount(piece).argmax()]
 
 
-def _fused(views: list[DepthView], outer: _Outer, cells: list[float]) -> list[ClosedMesh]:
+def _fused(views: list[DepthView], outer: Outer, cells: list[float]) -> list[ClosedMesh]:
     grids = [fusion.grid_about(outer.structure.points, cell) for cell in cells]
     found = [fusion.fused_mesh(grid, fusion.near(grid, outer.outside), views) for grid in grids]
     return [closed_mesh(*each, of_voxels=True) for each in found]

@@ -76,7 +76,7 @@ class _Lines(_Silent):
         tenth = part.what, 10 * part.done // part.total
         if self._told.get(part.step) != tenth:
             self._told[part.step] = tenth
-            self.say(f"  {part.step}: {part.what} {part.done} of {part.total}")
+            self.say(f"  {part} {part.done} of {part.total}")
 
     def done(self, name: str) -> None:
         """Count a step that has ended."""
@@ -113,7 +113,7 @@ class _Bar:
         """Show a bar for a step's parts of one kind."""
         if self._parts.get(part.step, ("",))[0] != part.what:
             self._end(part.step)
-            bar = self._bars.add_task("parts", left="", now=f"{part.step}: {part.what}")
+            bar = self._bars.add_task("parts", left="", now=str(part))
             self._parts[part.step] = part.what, bar
         self._bars.update(self._parts[part.step][1], completed=part.done, total=part.total)
 

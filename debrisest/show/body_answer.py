@@ -27,7 +27,7 @@ def body_answer(data: Data) -> list[str]:
         "outline": str(data.get("outline", "")),
         "mesh": str(data.get("mesh_method", "")),
         "mended": str(data.get("mended", "")),
-        "seen": f"{data['surface_seen']:.0%} of the surface" if "surface_seen" in data else "",
+        "seen": _seen(data),
         **_numbers(data),
         "cross-check": _hulls(data),
     }
@@ -67,6 +67,13 @@ def _distortion(data: Data) -> str:
     if sigma > 0.0:
         return f"{told(bent, sigma, '')}, OpenCV's k1, from the images"
     return "none told by the images; a lens that bends visibly needs a calibration"
+
+
+def _seen(data: Data) -> str:
+    """Return the share of the surface that is seen, not rounded up, as to a limit it misses."""
+    if "surface_seen" not in data:
+        return ""
+    return f"{np.floor(1e3 * data['surface_seen']) / 10.0:.3g}% of the surface"
 
 
 def _numbers(data: Data) -> dict[str, str]:

@@ -47,7 +47,7 @@ def test_a_camera_and_its_places_are_read(
     [
         (["t1.png 1 2 3"], "par.txt:1: 3 numbers; expected name K(9) R(9) t(3)"),
         (["t1.png 1 2 x"], "could not convert"),
-        (rows(factors())[:1], "no line for the image t2.png; it has t1.png"),
+        (rows(factors())[:1], "no camera for the image t2.png; it has t1.png"),
         (rows([-one for one in factors()]), "par.txt:1: no rotation, or no positive focal length"),
         (rows([factors()[0], factors()[1] * np.repeat([1.1, 1.0], [2, 19])]), "matrices differ"),
         (["2"], "it has nothing"),
@@ -63,3 +63,15 @@ def test_what_is_no_list_of_places_is_told(tmp_path: Path, lines: list[str], wor
 def test_a_pipe_is_no_list_of_places(tmp_path: Path) -> None:
     os.mkfifo(path := tmp_path / "par.txt")
     assert "par.txt" in refusal(lambda: read_places(path, NAMES))
+
+
+@pytest.mark.parametrize("head", ["", "CONTOUR\n"])
+def test_a_file_for_each_image_is_read(tmp_path: Path, head: str) -> None:
+    for number, values in enumerate(projections(-0.02), start=1):
+        rows = "\n".join(" ".join(map(repr, row.tolist())) for row in values.reshape(3, 4))
+        (tmp_path / f"pos_{number:03d}.txt").write_text(f"{head}{rows}\n")
+    found = read_places(tmp_path, ["rect_002_3_r5000.png", "rect_001_3_r5000.png"])
+    np.testing.assert_allclose(found.matrix, MATRIX, atol=1e-8)
+    np.testing.assert_allclose(found.rotation, TURNS[::-1], atol=1e-10)
+    lacking = refusal(lambda: read_places(tmp_path, ["rect_003.png"]))
+    assert "no camera for the image rect_003.png; it has 1, 2" in lacking

@@ -13,8 +13,8 @@ from debrisest.vision.image_files import (  # noqa: E402
     ImageSequence,
     read_images,
     write_images,
-    write_video,
 )
+from debrisest.vision.videos import write_video  # noqa: E402
 
 
 def sequence(cameras: tuple[str, ...] = ("left", "right"), frames: int = 5) -> ImageSequence:
@@ -64,6 +64,46 @@ def test_a_video_is_read_with_its_rate(tmp_path: Path, suffix: str) -> None:
     assert found.frames.shape == (6, 1, 48, 64)
     assert np.abs(found.frames[:, 0].astype(float) - frames).mean() < 8
     np.testing.assert_allclose(found.times, np.arange(6) / 10.0)
+
+
+def test_one_of_several_is_read_with_its_time(tmp_path: Path) -> None:
+    write_images(tmp_path, sequence(frames=7))
+    whole, some = read_images(tmp_path), read_images(tmp_path, every=3)
+    assert (some.frames == whole.frames[::3]).all()
+    assert some.names == whole.names[::3]
+    assert whole.times is not None and some.times is not None
+    assert (some.times == whole.times[::3]).all()
+    film = np.stack([np.full((48, 64), 30 * k, np.uint8) for k in range(7)])
+    write_video(tmp_path / "film.avi", film, 10.0)
+    seen = read_images(tmp_path / "film.avi", every=3)
+    np.testing.assert_allclose(seen.times, [0.0, 0.3, 0.6])
+    assert np.abs(seen.frames.mean(axis=(1, 2, 3)) - [0, 90, 180]).max() < 4
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16])
+def test_the_opacity_of_images_is_kept(tmp_path: Path, kind: type[np.integer]) -> None:
+    cut = np.full((48, 64, 4), np.iinfo(kind).max, kind)
+    cut[:10, :, 3] = 0
+    for number in range(3):
+        cv2.imwrite(str(tmp_path / f"{number}.png"), cut)
+    found = read_images(tmp_path, colours=True).opacity
+    assert found is not None
+    assert (found[:, 0] == np.where(np.arange(48) < 10, 0, 255)[:, None]).all()
+    half = read_images(tmp_path, widest=32, colours=True).opacity
+    assert half is not None and half.shape == (3, 1, 24, 32)
+    cut[..., 3] = np.iinfo(kind).max
+    for number in range(3):
+        cv2.imwrite(str(tmp_path / f"{number}.png"), cut)
+    assert read_images(tmp_path, colours=True).opacity is None
+
+
+def test_what_is_no_folder_of_images_is_told(tmp_path: Path) -> None:
+    (tmp_path / "IMG_1.HEIC").write_bytes(b"as a telephone keeps it")
+    with pytest.raises(UserError, match="1 as cameras and phones keep images; export"):
+        read_images(tmp_path)
+    write_images(tmp_path / "above" / "images", sequence(("camera",)))
+    with pytest.raises(UserError, match=r"no images there; are those in .*images meant\?"):
+        read_images(tmp_path / "above")
 
 
 def _empty(folder: Path) -> None:

@@ -12,10 +12,11 @@ from typer.testing import CliRunner
 from debrisest.arrays import Data
 from debrisest.attitude import quaternion
 from debrisest.cli.app import app
-from debrisest.cli.reconstruct import _thinned
+from debrisest.cli.images_scenario import thinned
 from debrisest.errors import UserError
 from debrisest.reconstruction.mesh_files import read_mesh
-from debrisest.vision.image_files import has_masks, read_images
+from debrisest.vision.image_files import read_images
+from debrisest.vision.image_names import has_masks
 from debrisest.vision.masks import read_masks
 from tests.vision.conftest import Scene
 
@@ -129,6 +130,20 @@ def test_masks_in_a_folder_of_their_own_tell_the_body(
     assert line(output, "outline") == "the masks that were given"
 
 
+def test_the_opacity_of_cut_out_images_is_their_mask(
+    tmp_path: Path, box: Data, photographs: Photographs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("debrisest.reconstruction.body._CELLS", (24, 40))
+    folder = tmp_path / "box"
+    folder.mkdir()
+    for number, (frame, shown) in enumerate(zip(box["measured_image"][0, :, 0], photographs)):
+        opaque = np.where(frame > 12, np.uint8(255), np.uint8(0))
+        Image.fromarray(np.dstack([shown, opaque])).save(folder / f"p{number + 1}.png")
+    code, output = said(folder)
+    assert code == 0
+    assert line(output, "outline") == "the masks that were given"
+
+
 def test_masks_among_images_and_masks_of_the_ground_are_known(tmp_path: Path) -> None:
     ground = np.full((40, 60), 255, np.uint8)
     ground[10:30, 20:40] = 0
@@ -222,10 +237,10 @@ def test_of_many_images_one_of_several_is_taken_and_said(
 ) -> None:
     for number in range(151):
         (tmp_path / f"viff.{number:03d}.ppm").write_bytes(b"")
-    assert _thinned(tmp_path) == 3
+    assert thinned(tmp_path) == 3
     assert "one of 3 of the 151 images is taken; --every 1" in capsys.readouterr().out
     (tmp_path / "viff.150.ppm").unlink()
-    assert _thinned(tmp_path) == 2
+    assert thinned(tmp_path) == 2
 
 
 @pytest.mark.parametrize("suffix", ["ppm", "pgm", "tif", "webp"])

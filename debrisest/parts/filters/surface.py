@@ -11,13 +11,14 @@ from debrisest.parts.recoveries.structure import padded
 from debrisest.problems.shape.model import ShapeModel
 from debrisest.reconstruction.body import (
     LEAST_COVERAGE,
+    LEAST_GUESSED,
     Body,
     Method,
-    Outline,
     Support,
     reconstructed_body,
 )
 from debrisest.reconstruction.error_bars import packed
+from debrisest.reconstruction.outline_choice import Outline
 from debrisest.roles import FilterPart, Given
 
 _ON_TABLE = (
@@ -30,12 +31,17 @@ _SUPPORT_CUT = (
 )
 
 
+_GUESS = "not confident: much was never seen; the bars let it be anywhere between mesh and centre"
+
+
 class SurfaceStatus(Outcome):
     """How a mesh ended; `sentence` tells the user."""
 
     CLOSED = 0, "a closed mesh; the error bars count scale, coverage and resolution"
     NO_SCALE = 1, "a closed mesh without a scale: only ratios are told"
     UNSEEN = 2, "too much was never seen: no number is told; let it turn more, or look lower too"
+    GUESSED = 3, f"{_GUESS}; let it turn more, or look lower too"
+    GUESSED_RATIOS = 4, f"{_GUESS}; without a scale: only ratios are told"
 
 
 _METHODS: dict[Method, str] = {
@@ -49,7 +55,7 @@ class Surface(FilterPart):
 
     takes = "shape_model"
     makes_start = True
-    version = 3
+    version = 4
     libraries = ("cv2", "pycolmap", "skimage")
     kind: Literal["surface"]
     method: Method = "fusion"
@@ -67,11 +73,12 @@ class Surface(FilterPart):
         runs, epochs = given.measured.shape[:2]
         bodies = [self._body(model, run) for run in range(runs)]
         scaled = np.isfinite(model.data["scale_spread"]) | (model.known_length is not None)
-        told = np.array([body.coverage >= LEAST_COVERAGE for body in bodies])
+        told = np.array([body.coverage >= LEAST_GUESSED for body in bodies])
+        confident = np.array([body.coverage >= LEAST_COVERAGE for body in bodies])
         blank = np.where(told, 1.0, np.nan)[:, None]
         state = np.stack([packed(body.properties) for body in bodies]) * blank
         sigma = np.stack([body.sigma for body in bodies]) * blank
-        status = np.where(told, np.where(scaled, 0, 1), 2)
+        status = np.where(told, np.where(confident, 0, 3) + np.where(scaled, 0, 1), 2)
         return Estimates(
             state=np.repeat(state[:, None], epochs, axis=1),
             sigma=np.repeat(sigma[:, None], epochs, axis=1),
@@ -83,7 +90,7 @@ class Surface(FilterPart):
             counts={
                 **_meshes(bodies),
                 "scaled": scaled.astype(np.float64),
-                "confident": (told & scaled).astype(np.float64),
+                "confident": (confident & scaled).astype(np.float64),
             },
         )
 

@@ -15,12 +15,13 @@ from debrisest.counted import counted
 from debrisest.draws import Draws, Stream
 from debrisest.roles import NonNegative, Positive, SimulationPart, Vector3
 from debrisest.vision.camera import PinholeImage
-from debrisest.vision.image_files import read_images, write_video
+from debrisest.vision.image_files import read_images
 from debrisest.vision.render import SAMPLES, Light, Pose, Renderer, grey_levels
 from debrisest.vision.room import Room
 from debrisest.vision.solids import Solid
 from debrisest.vision.surface import Surface
 from debrisest.vision.texture import SolidNoise
+from debrisest.vision.videos import write_video
 
 Size = Annotated[int, Field(ge=16, le=8192)]
 

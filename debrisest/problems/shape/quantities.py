@@ -28,7 +28,7 @@ QUANTITIES = {
     "hull_volume": Quantity(RUN, "m3", "volume of the convex hull"),
     "silhouette_volume": Quantity(RUN, "m3", "volume of what all silhouettes share"),
     "scaled": Quantity(RUN, "1", "the scale is known", "1"),
-    "confident": Quantity(RUN, "1", "the numbers of the body are told", "1"),
+    "confident": Quantity(RUN, "1", "the numbers of the body are told, and are no guess", "1"),
     "volume_error": Quantity(RUN, "1", "size of the relative error of the volume", "%"),
     **{
         f"inertia_{name}_error": Quantity(
