@@ -2,6 +2,7 @@
 
 import difflib
 import errno
+import os
 import re
 from collections.abc import Iterable
 
@@ -28,9 +29,18 @@ _NEXT = {
 def refused(error: OSError) -> str:
     """Return what the system refuses as a sentence, with what to do where that is known."""
     reason = error.strerror or str(error) or type(error).__name__
-    place = error.filename2 or error.filename
+    place = error.filename2 or error.filename or _gone()
     hint = _NEXT.get(error.errno or 0, "")
     return ": ".join(filter(None, (str(place or ""), reason, hint)))
+
+
+def _gone() -> str:
+    """Return what is not there although nobody names it: the folder that the command is in."""
+    try:
+        os.getcwd()
+    except OSError:
+        return "the folder that this command was started in is gone; start it in another one"
+    return ""
 
 
 def printable(text: str) -> str:

@@ -17,5 +17,5 @@ class CommitHook(BuildHookInterface):
         revision = runpy.run_path(str(package / "revision.py"))
         if version != "editable" and (told := revision["commit"](package)):
             file = Path(tempfile.mkdtemp()) / revision["BUILT"]
-            file.write_text(f"{told}\n")
+            file.write_text(f"{told} {revision['digest'](package)}\n")
             build_data["force_include"][str(file)] = f"debrisest/{file.name}"

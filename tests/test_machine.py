@@ -160,6 +160,7 @@ ODD_ENVIRONMENTS = {
     "language": {"LC_ALL": "xx_YY", "LANG": "xx.UTF-99", "PYTHONUTF8": "0"},
     "folders": {"HOME": "/dev/null", "TMPDIR": "/nonexistent", "GIT_DIR": "/x"},
     "libraries": {"MPLBACKEND": "nosuch", "OMP_NUM_THREADS": "x", "HDF5_USE_FILE_LOCKING": "x"},
+    "drivers": {"HDF5_DRIVER": "nosuch", "HDF5_VOL_CONNECTOR": "no such", "HDF5_PLUGIN_PATH": ":"},
 }
 
 
@@ -173,6 +174,31 @@ def test_odd_environments_change_no_result(
     path = Path("small") / "slow" / "assess-triad.000000.h5"
     ours, whole = (store.read(out / path) for out in (tmp_path / "results", reference))
     assert all(ours[key].tobytes() == value.tobytes() for key, value in whole.items())
+
+
+def test_a_folder_that_is_gone_is_named(small: Path, shell: Callable) -> None:
+    done = shell(
+        'mkdir gone; cd gone; rmdir "$PWD"; '
+        f"$debrisest sweep {small} {' '.join(ONE[:4])} --jobs 2 --out {small.parent}/out"
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("the folder that this command was started in is gone; start")
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_where_processes_share_no_locks_one_job_is_named(
+    small: Path, tmp_path: Path, cli: Callable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(*_: object, **__: object) -> None:
+        raise OSError(38, "Function not implemented")
+
+    monkeypatch.setattr("multiprocessing.synchronize.SemLock.__init__", refused)
+    done = cli("sweep", small, "--out", tmp_path / "out", "--jobs", 2)
+    assert done.exit_code == 2
+    assert done.stderr == (
+        "several processes need semaphores (on Linux /dev/shm): Function not implemented; "
+        "--jobs 1 needs none\n"
+    )
 
 
 @pytest.mark.parametrize("command", ["table", "sweep", "status", "plot"])

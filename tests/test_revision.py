@@ -1,11 +1,13 @@
 """The commit of the code: in checkouts, worktrees, packed references, and built packages."""
 
+import os
 import subprocess
 from pathlib import Path
 
 import pytest
 
-from debrisest.revision import BUILT, commit
+from debrisest import revision
+from debrisest.revision import BUILT, commit, digest
 
 
 def git(folder: Path, *arguments: str) -> str:
@@ -66,4 +68,66 @@ def test_a_package_inside_the_repository_of_another_has_none(package: Path) -> N
 
 def test_without_git_there_is_none(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
+    assert commit(package) == ""
+
+
+def test_a_built_package_that_was_edited_is_told(tmp_path: Path) -> None:
+    (tmp_path / "code.py").write_text("1\n")
+    (tmp_path / BUILT).write_text(f"0123abc {digest(tmp_path)}\n")
+    assert commit(tmp_path) == "0123abc"
+    (tmp_path / "code.py").write_text("2\n")
+    commit.cache_clear()
+    assert commit(tmp_path) == "0123abc+changed"
+
+
+def test_a_built_package_beside_a_repository_names_its_own_commit(package: Path) -> None:
+    (package / BUILT).write_text("0123abc\n")
+    assert commit(package) == "0123abc"
+
+
+def test_a_package_that_a_repository_does_not_hold_has_none(package: Path) -> None:
+    (package.parent / "other").mkdir()
+    (package.parent / "other" / "code.py").write_text("1\n")
+    assert commit(package.parent / "other") == ""
+
+
+def test_a_repository_without_a_commit_has_none(tmp_path: Path) -> None:
+    (tmp_path / "pkg").mkdir()
+    (tmp_path / "pkg" / "code.py").write_text("1\n")
+    git(tmp_path, "init", "-q")
+    assert commit(tmp_path / "pkg") == ""
+
+
+def test_a_new_file_is_told_though_the_settings_hide_it(package: Path) -> None:
+    git(package, "config", "status.showUntrackedFiles", "no")
+    (package / "new.py").write_text("2\n")
+    assert commit(package).endswith("+changed")
+
+
+def test_a_checkout_of_somebody_else(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = git(package, "rev-parse", "HEAD")
+    try:
+        for path in (package.parent, package.parent / ".git"):
+            os.chown(path, 65534, 65534)
+    except PermissionError:
+        pytest.skip("only root gives files away")
+    monkeypatch.setenv("HOME", str(package))  # where no settings allow it
+    assert commit(package) == told
+
+
+def test_where_git_cannot_tell_it_counts_as_changed(package: Path) -> None:
+    (package.parent / ".git" / "index").write_bytes(b"DIRC" + bytes(40))
+    assert commit(package) == git(package, "rev-parse", "HEAD") + "+changed"
+
+
+@pytest.mark.parametrize("said", ["sleep 60", r"printf '\377\376'; exit 1"])
+def test_a_git_that_hangs_or_says_no_text(
+    said: str, package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tool = tmp_path / "bin" / "git"
+    tool.parent.mkdir()
+    tool.write_text(f"#!/bin/sh\n{said}\n")
+    tool.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tool.parent}:{os.environ['PATH']}")
+    monkeypatch.setattr(revision, "_PATIENCE_S", 0.5)
     assert commit(package) == ""

@@ -33,6 +33,8 @@ for _variable in ("COLUMNS", "LINES", "SOURCE_DATE_EPOCH"):
     _given = os.environ.get(_variable, "0")
     if not _given.isdecimal() or len(_given) > 10:  # what rich, numpy and matplotlib trace at
         del os.environ[_variable]
+for _variable in ("HDF5_DRIVER", "HDF5_VOL_CONNECTOR"):  # a wrong one ends HDF5 by a signal
+    os.environ.pop(_variable, None)
 
 COMMANDS: dict[str, Callable[..., None]] = {
     "simulate": stages.simulate,

@@ -38,8 +38,9 @@ class WorkerPool(ProcessPoolExecutor):
     def __init__(self, jobs: int) -> None:
         spawn = multiprocessing.get_context("spawn")
         heard, self._told = spawn.Pipe(duplex=False)
-        given = self._told, spawn.Lock()
-        super().__init__(jobs, mp_context=spawn, initializer=_follow_parent, initargs=given)
+        with _semaphores_told():
+            given = self._told, spawn.Lock()
+            super().__init__(jobs, mp_context=spawn, initializer=_follow_parent, initargs=given)
         self._asked: list[Future[Any]] = []
         self._lost = False
         with _threads_told():
@@ -141,6 +142,17 @@ def _follow_parent(told: Connection, lock: Any) -> None:
         threading.Thread(target=wait, daemon=True).start()
     except RuntimeError:
         os._exit(1)
+
+
+@contextmanager
+def _semaphores_told() -> Iterator[None]:
+    """Raise OSError that says what to do where processes cannot share a lock: without /dev/shm."""
+    try:
+        yield
+    except (OSError, ImportError) as error:
+        said = getattr(error, "strerror", None) or str(error)
+        place = "several processes need semaphores (on Linux /dev/shm)"
+        raise OSError(errno.ENOSYS, f"{said}; --jobs 1 needs none", place) from None
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from hashlib import sha256
 
-from debrisest.files import put
+from debrisest.files import content, put
 from debrisest.fingerprint import fingerprint
 from debrisest.results.results import Results
 from debrisest.scenario.load import LoadedScenario
@@ -25,7 +25,7 @@ def kept(scenario: LoadedScenario, results: Results, make: Callable[[], list[Row
         return make()
     path, source = results.folder / NAME, _source(scenario, results)
     with suppress(OSError, ValueError):
-        seal, rows = path.read_text(encoding="utf-8").split("\n", 1)
+        seal, rows = content(path).decode().split("\n", 1)
         if seal == _seal(source, rows):
             return list(json.loads(rows))
     made = make()

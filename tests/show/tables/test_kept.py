@@ -50,7 +50,10 @@ def test_cells_are_made_once_and_shown_the_same(
 
 @pytest.mark.parametrize(
     "change",
-    ["values", "seal", "cut", "empty", "other rows under a seal of their own", "folder", "bytes"],
+    [
+        *("values", "seal", "cut", "empty", "other rows under a seal of their own"),
+        *("folder", "pipe", "device", "nowhere", "bytes"),
+    ],
 )
 def test_cells_that_were_changed_by_hand_or_by_a_disk_are_made_again(
     change: str, small: Path, swept: Path, cli: Callable, made: list[int]
@@ -72,6 +75,10 @@ def test_cells_that_were_changed_by_hand_or_by_a_disk_are_made_again(
         path.write_text(text)
     elif change == "folder":
         path.mkdir()
+    elif change == "pipe":
+        os.mkfifo(path)
+    elif change in ("device", "nowhere"):
+        path.symlink_to("/dev/zero" if change == "device" else "/none/there")
     else:
         path.write_bytes(bytes(range(128, 256)))
     made.clear()
