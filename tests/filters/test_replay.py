@@ -9,6 +9,7 @@ from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import anchors, replay, smooth
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.status import ReplayStatus
+from tests.filters.constants import constants
 
 F = np.array([[1.0, 0.5], [-0.1, 0.95]])
 H = np.array([[1.0, 0.0], [0.3, 1.0], [0.0, -2.0]])
@@ -290,6 +291,41 @@ def test_a_limited_state_is_the_best_within_its_limit():
         assert solution.cost[run] == pytest.approx(2.0 * best.cost, rel=1e-9)
         held += abs(best.x[0] - limit) < 1e-9
     assert 0 < held < RUNS
+
+
+def test_of_two_limits_one_may_undo_the_other():
+    """Two numbers in a box that nearly are one: held in the one, the other may go back inside."""
+    rng, runs = np.random.default_rng(12), 300
+    shown = np.array([[1.0, 0.95, 0.3], [0.9, 1.0, -0.2], [0.2, -0.3, 1.0], [0.1, 0.1, 0.1]])
+
+    def cut(state):
+        return np.concatenate([np.clip(state[..., :2], -1.0, 1.0), state[..., 2:]], -1)
+
+    def rows(states, sensitivity, first, epochs):
+        derivative = np.broadcast_to(shown, (*states.shape[:-1], *shown.shape))
+        return (derivative @ states[..., None])[..., 0], derivative
+
+    def excess(state, step):
+        asked = state + step
+        return np.tile(np.eye(3)[:2], (len(state), 1, 1)), (cut(asked) - asked)[:, :2]
+
+    model = constants(rows, np.full(4, 0.5), ("a", "b", "c"), excess=excess)
+    model = model._replace(retract=lambda state, error: cut(state + error))
+    measured = 2.0 * rng.normal(size=(runs, 1, 4))
+    prior, covariance = np.zeros((runs, 3)), np.tile(4.0 * np.eye(3), (runs, 1, 1))
+    arc = measured_arc(model, prior, covariance, measured)
+    solution = gauss_newton(model, arc, prior, 0, 10)
+    assert solution.converged.all()
+    found, whole = solution.at.state + solution.step, np.concatenate([shown / 0.5, 0.5 * np.eye(3)])
+    box = [-1.0, -1.0, -np.inf], [1.0, 1.0, np.inf]
+    undone = 0
+    for run in range(runs):
+        right = np.concatenate([measured[run, 0] / 0.5, np.zeros(3)])
+        best = lsq_linear(whole, right, box, tol=1e-14)
+        np.testing.assert_allclose(found[run], best.x, atol=1e-6)
+        free = np.linalg.lstsq(whole, right, rcond=None)[0]
+        undone += bool(((np.abs(free[:2]) > 1.0) & (np.abs(best.x[:2]) < 0.99)).any())
+    assert undone > 10, "limits that are undone are what is tested"
 
 
 def test_nis_of_the_first_epoch_is_the_cost_that_is_left():

@@ -16,8 +16,8 @@ CONVERGED = 1e-2
 directions together, which is taken yet."""
 _FIRST_DAMPING, _LEAST_DAMPING = 0.1, 0.01
 _CHARTS = 2  # rounds in which an error comes to lie where it is kept, of a chart that bends
-_LIMITS = 2
-"""Rounds in which limits of a step are found, one of which may bring up the next."""
+_LIMITS = 6
+"""Rounds in which limits of a step are found, one of which may bring up or undo another."""
 
 
 class Held(NamedTuple):
@@ -128,25 +128,42 @@ def _step(
 
 
 def _limited_step(model: ReplayModel, at: Linearization, matrix: Array) -> Array:
-    """Best step by a matrix of second derivatives (run, n_e, n_e) that `retract` will not cut.
-
-    What is limited keeps to its limit, and all else is the best that goes with it.
-    """
+    """Best step by a matrix of second derivatives (run, n_e, n_e) that `retract` will not cut."""
     step = scaled_solve(matrix, at.gradient)
     if model.excess is None:
         return step
-    limited = np.zeros((len(step), 1), dtype=np.bool_)
+    rows, excess = model.excess(at.state, step)
+    runs = np.flatnonzero((excess != 0.0).any(-1))
+    if len(runs):
+        toward = scaled_inverse(matrix[runs]) @ np.swapaxes(rows[runs], -1, -2)
+        limits = rows[runs], excess[runs], toward
+        step[runs] = _within(model.of(runs), at.state[runs], step[runs], *limits)
+    return step
+
+
+def _within(
+    model: ReplayModel, state: Array, free: Array, rows: Array, excess: Array, toward: Array
+) -> Array:
+    """Steps whose limited numbers are at their limits or within, and all else is the best with it.
+
+    What would go on beyond is held, as ``toward (run, n_e, c)`` moves it, and what is held and
+    would rather go back is let go: with a limit held, another may no longer be one.
+    """
+    assert model.excess is not None
+    asked = (rows @ free[..., None])[..., 0]
+    side, limit = np.sign(excess), asked + excess
     for _ in range(_LIMITS):
-        rows, excess = model.excess(at.state, step)
-        limited = limited | (excess != 0.0)
-        runs = np.flatnonzero((excess != 0.0).any(-1))
-        if len(runs) == 0:
+        held = side != 0.0
+        both = held[..., None, :] & held[..., None]
+        matrix = np.where(both, rows @ toward, np.eye(held.shape[-1]))
+        force = solve(matrix, np.where(held, limit - asked, 0.0)[..., None])[..., 0]
+        step = free + (toward @ force[..., None])[..., 0]
+        beyond = np.where(held, 0.0, model.excess(state, step)[1])
+        back = held & (force * side < 0.0)
+        if not (back | (beyond != 0.0)).any():
             break
-        held = np.where(limited[runs, :, None], rows[runs], 0.0)
-        toward = np.swapaxes(scaled_inverse(matrix[runs]) @ np.swapaxes(held, -1, -2), -1, -2)
-        free = np.where(limited[runs], 0.0, 1.0)[..., None] * np.eye(held.shape[1])
-        force = solve(held @ np.swapaxes(toward, -1, -2) + free, excess[runs, :, None])
-        step[runs] += (np.swapaxes(force, -1, -2) @ toward)[:, 0]
+        limit = np.where(beyond != 0.0, (rows @ step[..., None])[..., 0] + beyond, limit)
+        side = np.where(back, 0.0, np.where(held, side, np.sign(beyond)))
     return step
 
 

@@ -50,26 +50,30 @@ def with_bends(
         kept = found.kept[together]
         end = last if smoothed else int(kept[0])
         middle = half_way(measured, end)
-        runs = np.flatnonzero(finite(found.state[:, end], spread[:, together[-1]]))
-        size = max(1, _TOGETHER // (end + 1))
-        parts = np.split(runs, range(size, len(runs), size))
-        for some in filter(len, parts):  # none, where all runs are lost by then
+        for some in _parts(found.state[:, end], spread[:, together[-1]], end):
             part = model.of(some)
             arc = measured_arc(part, prior[some], covariance[some], measured[some, : end + 1])
-            start = part.rewind(found.state[some, end], end)
+            state, own = found.state[some, end], spread[some, together[-1]]
             with np.errstate(all="ignore"):
+                start = part.rewind(state, end)
                 ways = _ways(part, arc, start, [middle, *kept.tolist()], gate)
                 if truth is not None:
-                    own = found.state[some, end], spread[some, together[-1]]
-                    at, wide = moved(part, *own, end, middle)
+                    at, wide = moved(part, state, own, end, middle)
                     wide += _added(part, wide, *ways[0])
-                    joint = joint_square(part, at, wide, truth[some, middle])
-                    square[np.ix_(some, kept)] = joint[:, None]
+                    off = joint_square(part, at, wide, truth[some, middle])
+                    square[np.ix_(some, kept)] = off[:, None]
                 for slot, way in zip(together, ways[1:]):
                     more = _added(part, spread[some, slot], *way)
                     _widen(sigma, spread, some, found.kept, slot, more)
     counts = found.counts | ({} if truth is None else {"square_half_way": square})
     return found._replace(sigma=sigma, covariance=spread, counts=counts)
+
+
+def _parts(state: Array, spread: Array, end: int) -> list[IntArray]:
+    """Runs that are not lost by epoch ``end``, as many at a time as memory allows; maybe none."""
+    runs = np.flatnonzero(finite(state, spread))
+    size = max(1, _TOGETHER // (end + 1))
+    return [part for part in np.split(runs, range(size, len(runs), size)) if len(part)]
 
 
 def _widen(
