@@ -148,6 +148,7 @@ class KnownAssociation(FilterPart):
             keep=kept_epochs(self.keep_s, given.clock),
         )
         tests = [innovation_test(found.nis, found.nis_dof), *_scores(model, found)]
+        tests += _scores_together(model, found)
         return told(counting(found, "repairs"), tests)
 
 
@@ -173,6 +174,8 @@ def _unlabelled(
     ]
     if certain:
         tests.append(crowd_test(count["mistaken"], count["looked"]))
+    else:
+        tests += _scores_together(model, found)
     if once:
         tests.append(SelfTest(np.ones(len(found.state)), 0.0, _LINEARISED_ONCE))
     without = counting(found, "repairs", "validated")._replace(
@@ -182,18 +185,24 @@ def _unlabelled(
 
 
 def _scores(model: ScanModel, found: Estimates) -> Iterator[SelfTest]:
-    """What the innovations go with: the doubts, and more process noise than the model has."""
+    """What the innovations go with: each doubt, and more process noise than the model has."""
     counts = found.counts
-    score, information = counts["score"], counts["information"]
-    stated = np.diagonal(information, 0, -2, -1)
+    stated = np.diagonal(counts["information"], 0, -2, -1)
     with np.errstate(all="ignore"):
-        sigma = score_sigma(counts["square"], information)
-        for i, doubt in enumerate(model.doubts):
-            size = score[:, i] / stated[:, i]
-            yield score_test(size, sigma[:, i] / stated[:, i], doubt.reason, doubt.scale)
-        if model.doubts:
-            yield scores_test(score / sigma, score_correlation(information))
+        size = counts["score"] / stated
+        sigma = score_sigma(counts["square"], counts["information"]) / stated
+    for i, doubt in enumerate(model.doubts):
+        yield score_test(size[:, i], sigma[:, i], doubt.reason, doubt.scale)
     yield agitation_test(log_ratio(counts["likelihood"]))
+
+
+def _scores_together(model: ScanModel, found: Estimates) -> list[SelfTest]:
+    """All doubts at once; wrong picks that are taken for certain pull on all of them."""
+    if not model.doubts:
+        return []
+    information = found.counts["information"]
+    sigma = score_sigma(found.counts["square"], information)
+    return [scores_test(found.counts["score"] / sigma, score_correlation(information))]
 
 
 def counting(found: Estimates, *names: str) -> Estimates:
