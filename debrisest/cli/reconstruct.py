@@ -27,7 +27,11 @@ def reconstruct(
     ] = None,
     camera: Annotated[
         Path | None,
-        Option("--camera", help=f"Calibration (default: {CALIBRATION}, or {PLACES}, there)."),
+        Option(
+            "--camera",
+            help=f"Calibration, or places: a list, or a folder (default: {CALIBRATION}, or "
+            f"{PLACES}, there).",
+        ),
     ] = None,
     density_kg_m3: Annotated[float, Option("--density-kg-m3", help="Constant density.")] = 1000.0,
     mass_kg: Annotated[

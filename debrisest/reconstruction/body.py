@@ -31,8 +31,6 @@ Method = Literal["poisson", "fusion"]
 Support = Literal["found", "none"]
 LEAST_COVERAGE, LEAST_GUESSED = 0.8, 0.6
 """Of the surface: below the first numbers are guesses, below the second there are none."""
-_ANYWHERE = 3.0
-"""Thirds of its distance from the centre that a guess lets unseen surface be off."""
 _CELLS = (120, 200)
 """Cells along the body, of the coarse and of the fine surface."""
 _DEPTH = (6, 7)
@@ -103,8 +101,7 @@ def reconstructed_body(
     share = _share_seen(mesh, coverage, outer.table, cells[1])
     factor, scale_sigma = _scale(mesh, structure, known_length, cells[1])
     coarse, mesh = (each._replace(vertices=factor * each.vertices) for each in (coarse, mesh))
-    unseen = (1.0 - share) * (1.0 if share >= LEAST_COVERAGE else _ANYWHERE)
-    doubts = Doubts(scale_sigma, factor * depth_sigma(views), unseen)
+    doubts = Doubts(scale_sigma, factor * depth_sigma(views), 1.0 - share)
     return Body(
         mesh=mesh,
         properties=mass_properties(mesh.vertices, mesh.triangles),

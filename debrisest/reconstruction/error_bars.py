@@ -35,7 +35,7 @@ class Doubts(NamedTuple):
     depth: float
     """1-sigma of what all of the surface is off along its normals, m."""
     unseen: float
-    """Share of the surface that no image shows, times thirds of its distance that it may be off."""
+    """Share of the surface that no image shows."""
 
 
 def packed(properties: MassProperties) -> Array:

@@ -18,6 +18,7 @@ from debrisest.vision.refined import SHORTEST, refined
 from debrisest.vision.stereo_pair import StereoPair, rectified
 from debrisest.vision.stereo_tracker import StereoTracker
 
+_HALF = 127
 _FEWEST = 4
 """Tracks of which a motion can be found."""
 
@@ -111,10 +112,12 @@ def pixel_tracks(images: ImageSequence, times: Array) -> Tracked:
 
 
 def _body(images: ImageSequence) -> BoolArray | None:
-    """Return where the first camera shows the body (time, row, column) before a coloured backdrop.
+    """Return where the first camera shows the body (time, row, column): cut out, or before colours.
 
-    None where there is no such backdrop: what moves is the body then.
+    None where there is no coloured backdrop either: what moves is the body then.
     """
+    if images.opacity is not None:
+        return np.asarray(images.opacity[:, 0] > _HALF)
     masks = before_backdrop(images.frames, images.chroma)
     return None if masks is None else masks[:, 0]
 

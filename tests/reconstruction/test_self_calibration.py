@@ -57,3 +57,9 @@ def test_a_straight_lens_stays_straight():
     assert (k1, sigma) == (0.0, 0.0)
     assert focal == straight
     assert abs(focal / FOCAL - 1.0) < 0.01
+
+
+def test_corners_are_drawn_out_no_farther_than_by_lenses():
+    straight, focal, _, k1, _ = told(0.3, 200, 4)
+    assert k1 == 0.0
+    assert focal == straight

@@ -37,7 +37,7 @@ def test_lines_tell_tenths(capsys: pytest.CaptureFixture[str]) -> None:
         teller.done("the step")
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 2 * 11 + 1
-    assert lines[10] == "  : images 200 of 200"
+    assert lines[10] == "  images 200 of 200"
     assert lines[-1] == "[1/1] the step"
 
 

@@ -31,7 +31,7 @@ _SUPPORT_CUT = (
 )
 
 
-_GUESS = "not confident: much was never seen; the bars let it be anywhere between mesh and centre"
+_GUESS = "not confident: a guess, since much was never seen; the bars count that"
 
 
 class SurfaceStatus(Outcome):

@@ -38,7 +38,7 @@ class StructureFromMotion(RecoveryPart):
         *("found_camera_matrix", "found_lens_distortion", "found_focal_spread"),
         "found_distortion_spread",
     )
-    version = 5
+    version = 6
     libraries = ("cv2", "pycolmap")
     kind: Literal["structure_from_motion"]
     leave_out: Literal["outside_silhouettes", "still_features"] = "outside_silhouettes"
