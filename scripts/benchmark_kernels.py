@@ -21,7 +21,11 @@ from rich.table import Table
 
 from debrisest import compiled
 from debrisest.arrays import Array
-from debrisest.batch.arc import Arc, course
+from debrisest.attitude import quaternion
+from debrisest.batch.arc import Arc, along, course, displaced
+from debrisest.batch.descent import descend_all
+from debrisest.batch.point_sums import KnownPoints
+from debrisest.batch.tracks import tracks
 from debrisest.clock import Clock
 from debrisest.dynamics.log_inertia import log_ratios
 from debrisest.filters.association.evidence import Beside
@@ -33,6 +37,7 @@ from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.camera_range import model as camera_range
+from debrisest.problems.camera_range import redundant_model
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
 from debrisest.problems.stereo_pose.truth import draw_guess
@@ -61,12 +66,44 @@ def kernels() -> dict[str, Kernel]:
             orbit, core, 1165, 1
         ),
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
+        "descents on known points, 4 arcs of 150 epochs": descents(),
+        "91 states, sigma points of 20 runs moved": sigma_points(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
         **{
             f"association, one sensor of seven detections, {runs} runs": association(runs)
             for runs in (100, 1)
         },
     }
+
+
+def descents() -> Kernel:
+    """Return descents from beside the motion of eight points."""
+    draws, times = np.random.default_rng(2), np.linspace(0.0, 300.0, 150)
+    truth, model = (
+        Arc(150.0, IDENTITY, RATE, log_ratios(np.diag(MOMENTS))),
+        draws.normal(size=(8, 3)),
+    )
+    turned = model @ np.swapaxes(quaternion.to_matrix(along(truth, times)[0]), -1, -2)
+    seen = tracks(times, turned + 0.02 * draws.normal(size=turned.shape), 0.02)
+    evidence = KnownPoints(seen, model)
+    errors = np.repeat([1e-3, 1e-5, 0.02], [3, 3, 5]) * draws.normal(size=(4, 11))
+    starts = [displaced(truth, error) for error in errors]
+    return lambda: (np.stack([end.hold for end in descend_all(evidence, starts, 12)]),)
+
+
+def sigma_points() -> Kernel:
+    """Return a step of the points of 91 errors, of which four fifths share their core."""
+    draws = np.random.default_rng(1)
+    known = redundant_model.CameraGeometry(points=12, mean_motion=1e-3, step=1.0, focal_px=1000.0)
+    state = np.zeros((20, 183, 91))
+    state[...] = draws.normal(size=(20, 1, 91))
+    state[..., redundant_model.RATE] *= 0.02
+    state[..., redundant_model.POSITION] += [5.0, 17.0, 6.0]
+    state[..., redundant_model.INERTIA] = [135.0, 208.0, 260.0, 5.0, -3.0, 8.0]
+    moved = np.arange(1, 1 + redundant_model.CORE)
+    state[:, moved, moved - 1] += 1e-3
+    state[:, 91 + moved, moved - 1] -= 1e-3
+    return lambda: (redundant_model.process(known, state),)
 
 
 def of_replay() -> dict[str, Kernel]:

@@ -7,6 +7,7 @@ in information form, which takes what `Evidence` tells, then the recursion of Ra
 Striebel.
 """
 
+from functools import lru_cache
 from math import factorial
 from typing import NamedTuple
 
@@ -147,22 +148,27 @@ def _forward(
 
 
 def _predicted(state: _State, step: float, intensity: Array, order: int) -> tuple[_State, Array]:
-    taylor, noise = _chain(step, order)
-    turn = np.tensordot(taylor[0, 1:], state.motion.reshape(-1, order - 1, 3), ((0,), (1,)))
+    taylor, whole, noise, onward = _chain(step, order)
+    turn = np.tensordot(taylor, state.motion.reshape(-1, order - 1, 3), ((0,), (1,)))
     frame = np.tile(np.eye(3 * order), (len(state.q), 1, 1))
     middle = quaternion.multiply(state.q, quaternion.exp(0.5 * turn))
     frame[:, :3, :3] = quaternion.to_matrix(middle)
     back = np.swapaxes(frame, -1, -2)
-    transition = frame @ np.kron(taylor, np.eye(3)) @ back
-    added = intensity[:, None, None] * (frame @ np.kron(noise, np.eye(3)) @ back)
-    motion = state.motion @ np.kron(taylor[1:, 1:], np.eye(3)).T
+    transition = frame @ whole @ back
+    added = intensity[:, None, None] * (frame @ noise @ back)
+    motion = state.motion @ onward
     q = quaternion.multiply(state.q, quaternion.exp(turn))
     spread = transition @ state.spread @ np.swapaxes(transition, -1, -2) + added
     return _State(q, motion, spread), transition
 
 
-def _chain(step: float, order: int) -> tuple[Array, Array]:
-    """Transition and noise (order, order) of integrators in a row, the last fed by white noise."""
+@lru_cache(maxsize=32)
+def _chain(step: float, order: int) -> tuple[Array, Array, Array, Array]:
+    """How integrators in a row go on over a step, the last fed by white noise, along three axes.
+
+    What the first has of the others (order - 1,), the transition and the noise (3 order, 3 order),
+    and the transition of all but the first, transposed.
+    """
     taylor, noise = np.zeros((2, order, order))
     for i in range(order):
         for j in range(order):
@@ -171,7 +177,11 @@ def _chain(step: float, order: int) -> tuple[Array, Array]:
             noise[i, j] = step**power / (power * factorial(left) * factorial(right))
             if j >= i:
                 taylor[i, j] = step ** (j - i) / factorial(j - i)
-    return taylor, noise
+    whole, fed, onward = (
+        np.asarray(np.kron(part, np.eye(3)), dtype=np.float64)
+        for part in (taylor, noise, taylor[1:, 1:])
+    )
+    return taylor[0, 1:], whole, fed, onward.T
 
 
 def _updated(evidence: Evidence, epoch: int, state: _State, track: _Track) -> _State:

@@ -10,7 +10,6 @@ from debrisest.attitude.rotation_loops import matrix_of
 from debrisest.compiled import compiled
 
 Vector = tuple[float, float, float]
-_OWN = 15  # errors of an epoch that a point's rows depend on: 12 of the motion, 3 of the point
 
 
 @compiled
@@ -37,29 +36,37 @@ def point_sums(
     n_e = 14 + 3 * points
     residual, information = np.empty((runs, epochs, len(noise))), np.zeros((runs, n_e, n_e))
     gradient, cost = np.zeros((runs, n_e)), np.zeros(runs)
-    by, shown = np.empty((each, _OWN)), np.empty(each)
-    own, pull = np.empty((_OWN, 3)), np.empty(_OWN)
-    whole, total, moved = np.empty((12, 12)), np.empty(12), np.empty((12, 14))
+    by, shown = np.zeros((each, 6)), np.empty(each)
+    square, pull, by_arm = np.empty((6, 6)), np.empty(6), np.empty((15, 3))
+    joint, total, moved = np.empty((12, n_e - 2)), np.empty(12), np.empty((14, n_e - 2))
     for run in range(runs):
         for k in range(epochs):
             state, turn = states[run, k], matrix_of(states[run, k, 9:13])
-            at = turning[run, k], centre[k]
-            whole[:], total[:] = 0.0, 0.0
+            rate = state[6], state[7], state[8]
+            joint[:], total[:] = 0.0, 0.0
             for point in range(points):
-                _rows(state, turn, state[15 + 3 * point : 18 + 3 * point], camera, rows, shown, by)
-                own[:], pull[:] = 0.0, 0.0
+                body = state[15 + 3 * point : 18 + 3 * point]
+                arm = _applied(turn, body[0], body[1], body[2])
+                _rows(state, arm, camera, rows, shown, by)
+                square[:], pull[:] = 0.0, 0.0
                 for i in range(each):
                     m = each * point + i
                     left = measured[run, k, m] - shown[i] / noise[m]
                     residual[run, k, m] = left
                     left *= weight[run, k, m]
                     cost[run] += left * left
-                    _add_row(by[i], weight[run, k, m] / noise[m], left, whole, own, pull)
+                    flows = 4 <= rows[i] < 8
+                    _add_row(by[i], weight[run, k, m] / noise[m], left, flows, square, pull)
                 first = 14 + 3 * point
-                total += pull[:12]
-                gradient[run, first : first + 3] += pull[12:]
-                _add_own(own, *at, first, information[run])
-            _add_whole(whole, total, *at, moved, information[run], gradient[run])
+                told = _add_point(square, pull, arm, rate, by_arm, joint, total)
+                _to_body(turn, by_arm, joint[:, first - 2 : first + 1])
+                told = _applied(turn.T, told[0], told[1], told[2])
+                for a in range(3):
+                    gradient[run, first + a] += told[a]
+                    for b in range(3):
+                        information[run, first + a, first + b] += by_arm[12 + a, b]
+            at = turning[run, k], centre[k]
+            _add_motion(joint, total, *at, moved, information[run], gradient[run])
         for a in range(n_e):
             for b in range(a):
                 information[run, a, b] = information[run, b, a]
@@ -67,33 +74,27 @@ def point_sums(
 
 
 @compiled
-def _add_row(by: Array, scale: float, left: float, whole: Array, own: Array, pull: Array) -> None:
-    """Add a row's squares: of the motion, above the diagonal, and with its point."""
-    for a in range(_OWN):
-        by[a] *= scale
-    for a in range(_OWN):
-        if by[a] != 0.0:
-            pull[a] += by[a] * left
-            for b in range(a, 12):
-                whole[a, b] += by[a] * by[b]
-            for b in range(3):
-                own[a, b] += by[a] * by[12 + b]
+def _add_row(by: Array, scale: float, left: float, flows: bool, square: Array, pull: Array) -> None:
+    """Add a row's squares above the diagonal; one that does not flow depends on the place alone."""
+    for a in range(6 if flows else 3):
+        scaled = by[a] * scale
+        pull[a] += scaled * left
+        for b in range(a, 6 if flows else 3):
+            square[a, b] += scaled * (by[b] * scale)
 
 
 @compiled
 def _rows(
     state: Array,
-    turn: Array,
-    body: Array,
+    arm: Vector,
     camera: tuple[Array, float],
     rows: IntArray,
     shown: Array,
     by: Array,
 ) -> None:
-    """Write what a point shows (r,), and its derivative (r, 15) by the errors of the epoch."""
+    """Write what a point shows (r,), and its derivative (r, 6) by its place and velocity."""
     axes, baseline = camera
-    rate, arm = (state[6], state[7], state[8]), _applied(turn, body[0], body[1], body[2])
-    moved = _cross(rate, arm)
+    moved = _cross((state[6], state[7], state[8]), arm)
     point = _applied(axes, state[0] + arm[0], state[1] + arm[1], state[2] + arm[2])
     velocity = _applied(axes, state[3] + moved[0], state[4] + moved[1], state[5] + moved[2])
     near = 1.0 / point[1]
@@ -101,50 +102,98 @@ def _rows(
     for i in range(len(rows)):
         row, across = rows[i], 2 * (rows[i] % 2)
         slope = (point[across] - (baseline if row % 4 == 2 else 0.0)) * near
-        side, ahead, flow = near, -slope * near, False
+        side, ahead = near, -slope * near
         if row < 4:
             shown[i] = slope
         elif row < 8:
-            shown[i], flow = (velocity[across] - slope * velocity[1]) * near, True
+            shown[i] = (velocity[across] - slope * velocity[1]) * near
+            by[i, 3], by[i, 4], by[i, 5] = _row(axes, across, near, -slope * near)
             side, ahead = -recede * near, (slope * recede - shown[i]) * near
         else:
             shown[i], side, ahead = -baseline * near, 0.0, baseline * near * near
-        by_point = _row(axes, across, side, ahead)
-        by_velocity = _row(axes, across, near, -slope * near) if flow else (0.0, 0.0, 0.0)
-        _write(by_point, by_velocity, arm, rate, turn, by[i])
+        by[i, 0], by[i, 1], by[i, 2] = _row(axes, across, side, ahead)
 
 
 @compiled
-def _write(
-    by_point: Vector, by_velocity: Vector, arm: Vector, rate: Vector, turn: Array, by: Array
-) -> None:
-    """Write a row by position, velocity, rate, attitude and the point in the body."""
-    more = _cross(by_velocity, rate)
-    by_arm = (by_point[0] + more[0], by_point[1] + more[1], by_point[2] + more[2])
-    by_rate, by_turn = _cross(arm, by_velocity), _cross(arm, by_arm)
-    for i in range(3):
-        by[i], by[3 + i], by[6 + i], by[9 + i] = by_point[i], by_velocity[i], by_rate[i], by_turn[i]
-        by[12 + i] = by_arm[0] * turn[0, i] + by_arm[1] * turn[1, i] + by_arm[2] * turn[2, i]
-
-
-@compiled
-def _add_own(own: Array, turning: Array, centre: Array, first: int, information: Array) -> None:
-    """Add what a point has with the motion, and by itself."""
-    for a in range(6):
-        for b in range(6):
-            for c in range(3):
-                information[b, first + c] += centre[a, b] * own[a, c]
-        for b in range(8):
-            for c in range(3):
-                information[6 + b, first + c] += turning[a, b] * own[6 + a, c]
-    for b in range(3):
-        for c in range(3):
-            information[first + b, first + c] += own[12 + b, c]
-
-
-@compiled
-def _add_whole(
+def _add_point(
+    square: Array,
+    pull: Array,
+    arm: Vector,
+    rate: Vector,
+    by_arm: Array,
     whole: Array,
+    total: Array,
+) -> Vector:
+    """Add what place and velocity of a point tell of the motion; return the pull of its arm.
+
+    Of ``whole`` that is above the diagonal. ``by_arm (15, 3)`` is written: what position, velocity,
+    rate, attitude and the arm itself tell together with the arm.
+    """
+    for i in range(6):
+        for j in range(i):
+            square[i, j] = square[j, i]
+    for i in range(6):
+        flow = square[i, 3], square[i, 4], square[i, 5]
+        turned, spun = _cross(flow, rate), _cross(arm, flow)
+        for j in range(3):
+            by_arm[i, j] = square[i, j] + turned[j]
+            whole[i, 6 + j] += spun[j]
+        for j in range(i, 6):
+            whole[i, j] += square[i, j]
+    for j in range(3):
+        flow = by_arm[3, j], by_arm[4, j], by_arm[5, j]
+        turned, spun = _cross(flow, rate), _cross(arm, flow)
+        of_arm = by_arm[0, j] + turned[0], by_arm[1, j] + turned[1], by_arm[2, j] + turned[2]
+        attitude = _cross(arm, of_arm)
+        for i in range(3):
+            by_arm[6 + i, j], by_arm[9 + i, j], by_arm[12 + i, j] = spun[i], attitude[i], of_arm[i]
+    _add_turns(square, by_arm, arm, whole)
+    flow = pull[3], pull[4], pull[5]
+    turned, spun = _cross(flow, rate), _cross(arm, flow)
+    of_arm = pull[0] + turned[0], pull[1] + turned[1], pull[2] + turned[2]
+    attitude = _cross(arm, of_arm)
+    for i in range(3):
+        total[i] += pull[i]
+        total[3 + i] += pull[3 + i]
+        total[6 + i] += spun[i]
+        total[9 + i] += attitude[i]
+    return of_arm
+
+
+@compiled
+def _add_turns(square: Array, by_arm: Array, arm: Vector, whole: Array) -> None:
+    """Add what rate and attitude tell by themselves, and the attitude with all."""
+    x = _cross(arm, (square[3, 3], square[4, 3], square[5, 3]))
+    y = _cross(arm, (square[3, 4], square[4, 4], square[5, 4]))
+    z = _cross(arm, (square[3, 5], square[4, 5], square[5, 5]))
+    for i in range(3):
+        spun = _cross(arm, (x[i], y[i], z[i]))
+        for j in range(3):
+            whole[6 + i, 6 + j] += spun[j]
+    for i in range(12):
+        attitude = _cross(arm, (by_arm[i, 0], by_arm[i, 1], by_arm[i, 2]))
+        for j in range(3):
+            whole[i, 9 + j] += attitude[j]
+
+
+@compiled
+def _to_body(turn: Array, by_arm: Array, own: Array) -> None:
+    """Write what motion and point in the body tell together (12, 3), and the latter by itself.
+
+    That takes the place of what the arm tells by itself, the last of ``by_arm (15, 3)``.
+    """
+    for i in range(15):
+        told = _applied(turn.T, by_arm[i, 0], by_arm[i, 1], by_arm[i, 2])
+        place = own[i] if i < 12 else by_arm[i]
+        place[0], place[1], place[2] = told
+    for j in range(3):
+        told = _applied(turn.T, by_arm[12, j], by_arm[13, j], by_arm[14, j])
+        by_arm[12, j], by_arm[13, j], by_arm[14, j] = told
+
+
+@compiled
+def _add_motion(
+    joint: Array,
     total: Array,
     turning: Array,
     centre: Array,
@@ -152,25 +201,31 @@ def _add_whole(
     information: Array,
     gradient: Array,
 ) -> None:
-    """Add what the points together tell of the motion, by its errors at the start."""
-    moved[:] = 0.0
+    """Add what an epoch tells, ``joint (12, 12 + 3N)``, by the errors of the motion at the start.
+
+    Of the motion by itself, the first twelve, what is above the diagonal is given.
+    """
     for a in range(12):
-        for c in range(6):
-            left = whole[a, c] if a < c else whole[c, a]
-            right = whole[a, 6 + c] if a < 6 + c else whole[6 + c, a]
-            for b in range(6):
-                moved[a, b] += left * centre[c, b]
-            for b in range(8):
-                moved[a, 6 + b] += right * turning[c, b]
+        for b in range(a):
+            joint[a, b] = joint[b, a]
+    moved[:] = 0.0
     for c in range(6):
         for a in range(6):
             gradient[a] += centre[c, a] * total[c]
-            for b in range(a, 14):
-                information[a, b] += centre[c, a] * moved[c, b]
+            for b in range(joint.shape[1]):
+                moved[a, b] += centre[c, a] * joint[c, b]
         for a in range(8):
             gradient[6 + a] += turning[c, a] * total[6 + c]
-            for b in range(6 + a, 14):
-                information[6 + a, b] += turning[c, a] * moved[6 + c, b]
+            for b in range(joint.shape[1]):
+                moved[6 + a, b] += turning[c, a] * joint[6 + c, b]
+    for a in range(14):
+        for c in range(6):
+            for b in range(6):
+                information[a, b] += moved[a, c] * centre[c, b]
+            for b in range(8):
+                information[a, 6 + b] += moved[a, 6 + c] * turning[c, b]
+        for b in range(12, joint.shape[1]):
+            information[a, 2 + b] += moved[a, b]
 
 
 @compiled
