@@ -209,7 +209,7 @@ def test_a_folder_without_rights(
         folder.chmod(mode)
         for parent in (out, config.parent, out.parent):
             parent.chmod(0o755)
-        cli(command, config, "--out", out)
+        cli(command, config, "--out", out, *ONE[:4])
         os.seteuid(65534)
         try:
             done = cli(command, config, "--out", out)

@@ -17,7 +17,7 @@ from debrisest.shipped import shipped_path
 from debrisest.vocabulary import has_runs
 
 RUNS = 5
-CASES = {"biondi2017": ("1", 300.0), "li2011": ("clutter-10", 300.0), "pesce2017": ("A", 40.0)}
+CASES = {"biondi2017": ("1", 100.0), "li2011": ("clutter-10", 100.0), "pesce2017": ("A", 20.0)}
 """A case of each, and how much of it is enough, s."""
 
 
