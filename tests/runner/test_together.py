@@ -73,7 +73,7 @@ def test_chunks_computed_together_have_the_files_of_chunks_computed_alone(tmp_pa
     def steps(folder: str) -> dict[str, list[Step]]:
         found: dict[str, list[Step]] = {}
         for step in plan(
-            load_scenario(shipped_path("first_steps")), tmp_path / folder, Selection(50)
+            load_scenario(shipped_path("first_steps")), tmp_path / folder, Selection(30)
         ):
             found.setdefault(str(step.kin), []).append(step)
         return found
