@@ -6,6 +6,7 @@ numba, where numba cannot be imported, and where the environment has ``DEBRISEST
 
 import os
 from collections.abc import Callable
+from contextlib import ExitStack, suppress
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError
@@ -13,6 +14,8 @@ from importlib.metadata import version as version_of
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar, cast
+
+from debrisest.files import lock
 
 Kernel = TypeVar("Kernel", bound=Callable[..., object])
 
@@ -42,9 +45,12 @@ def compiled(kernel: Kernel) -> Kernel:
 
     config: Any = numba.config
     given = config.CACHE_DIR
-    config.CACHE_DIR = str(_cache(given))
+    config.CACHE_DIR = str(folder := _cache(given))
     try:
-        return cast(Kernel, numba.njit(cache=True, error_model="numpy")(kernel))
+        loops: Any = numba.njit(cache=True, error_model="numpy")(kernel)
+        own = folder / f"{kernel.__module__}.{kernel.__qualname__}.lock"
+        loops.compile = _by_one_process(loops.compile, own)
+        return cast(Kernel, loops)
     except RuntimeError:
         return cast(Kernel, numba.njit(error_model="numpy")(kernel))
     finally:
@@ -60,3 +66,19 @@ def _cache(given: str) -> Path:
     package = Path(__file__).parent
     source = b"".join(path.read_bytes() for path in sorted(package.rglob("*_loops.py")))
     return Path(given or package / "__pycache__") / f"loops-{sha256(source).hexdigest()[:16]}"
+
+
+def _by_one_process(compile: Callable[[Any], Any], path: Path) -> Callable[[Any], Any]:
+    """Return what compiles a kernel, in one process at a time: the next has it from the cache.
+
+    Where a file system has no locks, each process compiles.
+    """
+
+    def compile_alone(signature: Any) -> Any:
+        with ExitStack() as held:
+            with suppress(OSError):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                lock(held.enter_context(path.open("a")).fileno(), wait=True)
+            return compile(signature)
+
+    return compile_alone

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from debrisest import compiled
+from debrisest.files import lock
 
 
 def test_a_change_of_any_loops_is_another_folder(
@@ -28,3 +29,17 @@ def test_what_others_keep_of_numba_stays_where_it_was() -> None:
     before = numba.config.CACHE_DIR
     assert compiled.compiled(lambda x: x + 1)(1) == 2
     assert before == numba.config.CACHE_DIR
+
+
+def test_a_kernel_is_compiled_by_one_process_at_a_time(tmp_path: Path) -> None:
+    path = tmp_path / "new" / "kernel.lock"
+
+    def held(_: object) -> bool:
+        with path.open("a") as file, pytest.raises(BlockingIOError):
+            lock(file.fileno())
+        return True
+
+    assert compiled._by_one_process(held, path)(())
+    with path.open("a") as file:
+        lock(file.fileno())
+    assert compiled._by_one_process(len, path / "below a file")("abc") == 3

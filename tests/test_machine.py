@@ -235,7 +235,7 @@ def test_a_folder_without_rights(
         folder.chmod(mode)
         for parent in (out, config.parent, out.parent):
             parent.chmod(0o755)
-        cli(command, config, "--out", out)
+        cli(command, config, "--out", out, *ONE[:4])
         os.seteuid(65534)
         try:
             done = cli(command, config, "--out", out)
@@ -266,8 +266,13 @@ def test_a_folder_without_rights(
     ids=" ".join,
 )
 def test_pipes_that_nobody_writes_to_are_waited_for_by_no_command(
-    given: tuple[str, ...], small: Path, shipped: Path, cli: Callable
+    given: tuple[str, ...],
+    small: Path,
+    shipped: Path,
+    cli: Callable,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.chdir(small.parent)
     os.mkfifo(small.parent / "pipe.csv")
     for name in ("tracks", "poses"):
         shutil.copy(shipped / "examples" / f"{name}.csv", small.parent)

@@ -20,9 +20,15 @@ def derivative(q: Array, rate: Array, ratio: Array) -> tuple[Array, Array]:
     Components come first. ``ratio`` (3, ...) is ``(J2 - J3) / J1`` and its cyclic companions, all
     that the motion shows of the moments (Eqs 29 and 31, corrected).
     """
-    q0, q1, q2, q3 = q
-    w1, w2, w3 = rate
-    q_dot, acceleration = np.empty_like(q), np.empty_like(rate)
+    slope = _slope(np.concatenate([q, rate]), ratio)
+    return slope[:4], slope[4:]
+
+
+def _slope(state: Array, ratio: Array) -> Array:
+    """Return the time derivative (7, ...) of ``q`` and the rate, one above the other."""
+    q0, q1, q2, q3, w1, w2, w3 = state
+    slope = np.empty_like(state)
+    q_dot, acceleration = slope[:4], slope[4:]
     q_dot[0] = -(q1 * w1 + q2 * w2 + q3 * w3)
     q_dot[1] = q0 * w1 + q2 * w3 - q3 * w2
     q_dot[2] = q0 * w2 + q3 * w1 - q1 * w3
@@ -30,7 +36,7 @@ def derivative(q: Array, rate: Array, ratio: Array) -> tuple[Array, Array]:
     acceleration[0], acceleration[1], acceleration[2] = w2 * w3, w3 * w1, w1 * w2
     q_dot *= 0.5
     acceleration *= ratio
-    return q_dot, acceleration
+    return slope
 
 
 def euler_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array, Array]:
@@ -44,15 +50,17 @@ def rk4_step(q: Array, rate: Array, ratio: Array, step: float) -> tuple[Array, A
 
     Of a fast body the step is divided (`debrisest.dynamics.substeps`).
     """
+    state = np.concatenate([q, rate])
     for _, part in parts(step, substeps(np.linalg.norm(rate, axis=0), step)):
-        q, rate = _runge_kutta(q, rate, ratio, part)
-    return q, rate
+        state = _runge_kutta(state, ratio, part)
+    return state[:4], state[4:]
 
 
-def _runge_kutta(q: Array, rate: Array, ratio: Array, step: float | Array) -> tuple[Array, Array]:
+def _runge_kutta(state: Array, ratio: Array, step: float | Array) -> Array:
     half, sixth = 0.5 * step, step / 6
-    q1, w1 = derivative(q, rate, ratio)
-    q2, w2 = derivative(q + half * q1, rate + half * w1, ratio)
-    q3, w3 = derivative(q + half * q2, rate + half * w2, ratio)
-    q4, w4 = derivative(q + step * q3, rate + step * w3, ratio)
-    return q + sixth * (q1 + 2 * (q2 + q3) + q4), rate + sixth * (w1 + 2 * (w2 + w3) + w4)
+    first = _slope(state, ratio)
+    second = _slope(state + half * first, ratio)
+    third = _slope(state + half * second, ratio)
+    last = _slope(state + step * third, ratio)
+    following: Array = state + sixth * (first + 2 * (second + third) + last)
+    return following

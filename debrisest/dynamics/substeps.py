@@ -16,8 +16,8 @@ MOST = 100
 def substeps(speed: Array, step: float) -> IntArray:
     """Return the number of parts of a step, s, for each ``speed (...)``, rad/s, of any sign."""
     with np.errstate(invalid="ignore", over="ignore"):
-        turn = np.nan_to_num(np.abs(speed * step), nan=0.0, posinf=np.inf)
-    return np.asarray(np.clip(np.ceil(turn / LARGEST_TURN), 1, MOST), dtype=np.int64)
+        count = np.ceil(np.abs(speed * step) / LARGEST_TURN)
+    return np.asarray(np.minimum(np.fmax(count, 1.0), MOST), dtype=np.int64)
 
 
 def parts(step: float, count: IntArray) -> Iterator[tuple[int, float | Array]]:

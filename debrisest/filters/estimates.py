@@ -108,12 +108,15 @@ class EstimatesWriter:
 
         `shown` is what to store in place of the state, where parts of it are not to be shown.
         """
-        sound = finite(state, covariance)
-        self._status[self.runs[~sound]] = FilterStatus.DIVERGED
+        sound, stored = finite(state, covariance), state if shown is None else shown
         going = np.flatnonzero(sound)
-        self.runs = self.runs[going]
-        self.write(k, (state if shown is None else shown)[going], covariance[going])
-        self.count(k, {name: values[going] for name, values in figures.items()})
+        if len(going) < len(sound):
+            self._status[self.runs[~sound]] = FilterStatus.DIVERGED
+            self.runs = self.runs[going]
+            stored, covariance = stored[going], covariance[going]
+            figures = {name: values[going] for name, values in figures.items()}
+        self.write(k, stored, covariance)
+        self.count(k, figures)
         return going
 
     def write(self, k: int, state: Array, covariance: Array) -> None:

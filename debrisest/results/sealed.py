@@ -11,6 +11,7 @@ import struct
 from contextlib import suppress
 from hashlib import sha256
 from itertools import chain
+from sys import intern
 from typing import Any, BinaryIO, NamedTuple
 
 FORMAT = "debrisest checkpoint"
@@ -98,8 +99,14 @@ def _label(text: bytes) -> Label | None:
     with suppress(ValueError, TypeError, RecursionError):
         told = Label(**json.loads(text))
         if isinstance(told.attributes, dict) and type(told.length) is int:
-            return told
+            shared = {name: _shared(value) for name, value in told.attributes.items()}
+            return told._replace(attributes=shared)
     return None
+
+
+def _shared(value: Any) -> Any:
+    """Return a text that many files have, such as the scenario, as the only one of its letters."""
+    return intern(value) if type(value) is str else value
 
 
 def _tail(file: BinaryIO, end: int, length: int) -> bytes:

@@ -20,6 +20,7 @@ from debrisest.files import replacing
 from debrisest.results.image import check, data_of, frames_of, opened
 from debrisest.results.sealed import (
     FORMAT,
+    Label,
     is_foreign,
     is_older,
     read_image,
@@ -87,7 +88,7 @@ class Depth(Enum):
 
 def inspect(path: Path, depth: Depth = Depth.DATASETS) -> Checkpoint:
     """Return what a path holds, verified as far as is asked for."""
-    found, image = _look(path, depth is not Depth.LABEL)
+    found, image = _look(path, depth)
     try:
         if image and depth is Depth.DATASETS:
             check(image, found.attributes)
@@ -149,13 +150,25 @@ def fits(attributes: Mapping[str, Any], expected: Mapping[str, Any]) -> bool:
     return same and attributes.get("runs", 0) >= expected.get("runs", 0)
 
 
-def _look(path: Path, numbers: bool = True) -> tuple[Checkpoint, bytes]:
-    """Return what a path holds, and its HDF5 part if it is whole and asked for."""
+def _look(path: Path, depth: Depth = Depth.DATASETS) -> tuple[Checkpoint, bytes]:
+    """Return what a path holds, and its HDF5 part if it is whole and its datasets are asked for."""
     if not path.exists():
         return Checkpoint(Condition.MISSING), b""
     if not path.is_file():
         return Checkpoint(Condition.FOREIGN), b""
-    return _read(path) if numbers else (_labelled(path, _state(path)), b"")
+    if depth is Depth.DATASETS:
+        return _read(path)
+    state = _state(path)
+    found, label = _labelled(path, state)
+    wrong = depth is Depth.BYTES and label is not None and not _is_sealed(path, state)
+    return found._replace(condition=Condition.DAMAGED) if wrong else found, b""
+
+
+def _read(path: Path) -> tuple[Checkpoint, bytes]:
+    with path.open("rb") as file:
+        found, label = _label_in(file)
+        image = read_image(file, label) if label else b""
+    return found if image is not None else found._replace(condition=Condition.DAMAGED), image or b""
 
 
 def _state(path: Path) -> tuple[int, ...]:
@@ -165,25 +178,32 @@ def _state(path: Path) -> tuple[int, ...]:
 
 
 @lru_cache(maxsize=10_000)
-def _labelled(path: Path, _: tuple[int, ...]) -> Checkpoint:
+def _labelled(path: Path, _: tuple[int, ...]) -> tuple[Checkpoint, Label | None]:
     """Return what the label of a file tells, which a command asks for several times."""
-    return _read(path, numbers=False)[0]
-
-
-def _read(path: Path, numbers: bool = True) -> tuple[Checkpoint, bytes]:
     with path.open("rb") as file:
-        label = read_label(file)
-        if label is None:
-            return Checkpoint(_without_label(file)), b""
-        if label.attributes.get("schema_version") != SCHEMA_VERSION:
-            return Checkpoint(Condition.OTHER_VERSION, label.attributes), b""
-        try:
-            require_told(label.attributes)
-        except ValueError:
-            return Checkpoint(Condition.DAMAGED), b""
-        image = read_image(file, label) if numbers else b""
-    condition = Condition.DAMAGED if image is None else Condition.WHOLE
-    return Checkpoint(condition, label.attributes, label.digest), image or b""
+        return _label_in(file)
+
+
+@lru_cache(maxsize=10_000)
+def _is_sealed(path: Path, state: tuple[int, ...]) -> bool:
+    """Return whether the HDF5 part of a file is what its label says."""
+    _, label = _labelled(path, state)
+    with path.open("rb") as file:
+        return label is not None and read_image(file, label) is not None
+
+
+def _label_in(file: BinaryIO) -> tuple[Checkpoint, Label | None]:
+    """Return what is known of an open file without its numbers, and its label if that is whole."""
+    label = read_label(file)
+    if label is None:
+        return Checkpoint(_without_label(file)), None
+    if label.attributes.get("schema_version") != SCHEMA_VERSION:
+        return Checkpoint(Condition.OTHER_VERSION, label.attributes), None
+    try:
+        require_told(label.attributes)
+    except ValueError:
+        return Checkpoint(Condition.DAMAGED), None
+    return Checkpoint(Condition.WHOLE, label.attributes, label.digest), label
 
 
 def _told(path: Path, condition: Condition) -> str:

@@ -19,7 +19,7 @@ from debrisest.shipped import shipped_path
 from debrisest.vocabulary import has_runs
 
 RUNS = 5
-CASES = {"biondi2017": ("1", 300.0), "li2011": ("clutter-10", 300.0), "pesce2017": ("A", 40.0)}
+CASES = {"biondi2017": ("1", 100.0), "li2011": ("clutter-10", 100.0), "pesce2017": ("A", 20.0)}
 """A case of each, and how much of it is enough, s."""
 
 
@@ -75,7 +75,7 @@ def test_chunks_computed_together_have_the_files_of_chunks_computed_alone(tmp_pa
     def steps(folder: str) -> dict[str, list[Step]]:
         found: dict[str, list[Step]] = {}
         for step in plan(
-            load_scenario(shipped_path("first_steps")), tmp_path / folder, Selection(50)
+            load_scenario(shipped_path("first_steps")), tmp_path / folder, Selection(30)
         ):
             found.setdefault(str(step.kin), []).append(step)
         return found

@@ -35,12 +35,13 @@ LEAST_MOMENT = 0.02
 
 def process(state: Array, step: float, integrator: Integrator) -> Array:
     """Return the states (..., 14) after ``step`` seconds; offset and moments do not change."""
-    following = np.array(np.moveaxis(state, -1, 0), order="C")
+    last = state.ndim - 1
+    following = np.array(state.transpose(last, *range(last)), order="C")
     moments = following[MOMENTS]
     j1, j2, j3 = np.copysign(np.maximum(np.abs(moments), LEAST_MOMENT), moments)
     ratio = np.stack([(j2 - j3) / j1, (j3 - j1) / j2, (j1 - j2) / j3])
     following[Q_IB], following[RATE] = integrator(following[Q_IB], following[RATE], ratio, step)
-    return np.moveaxis(following, 0, -1)
+    return following.transpose(*range(1, state.ndim), 0)
 
 
 def measured_attitude(state: Array) -> Array:
@@ -52,13 +53,14 @@ def correct(state: Array, error: Array) -> Array:
     """Add an error (..., 14), then scale both quaternions and the moments to unit norm."""
     corrected = state + error
     for block in (Q_IB, Q_BF, MOMENTS):
-        corrected[..., block] /= np.linalg.norm(corrected[..., block], axis=-1, keepdims=True)
+        vector = corrected[..., block]
+        vector /= np.sqrt((vector * vector).sum(-1, keepdims=True))
     return corrected
 
 
 def sign_free_innovation(measured: Array, predicted: Array) -> Array:
     """Return ``+-measured - predicted``, whichever sign lies nearer: both are one attitude."""
-    product = np.sum(measured * predicted, axis=-1, keepdims=True)
+    product = (measured * predicted).sum(-1, keepdims=True)
     return np.where(product < 0, -measured, measured) - predicted
 
 

@@ -1,6 +1,6 @@
 """Tables as text: for the terminal, Markdown, LaTeX, CSV and JSON."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Literal
 
 import pandas as pd
@@ -165,7 +165,7 @@ def _fitting(sheet: Sheet, terminal: Console) -> list[Table]:
     named = 2 if "source" in sheet.heads else 1
     middle = (named + len(sheet.heads) + 1) // 2
     if fitting or len(sheet.heads) < named + 2:
-        return [_rich_table(fitting or forms[-1])]
+        return [_rich_table(fitting or forms[-1], folded=fitting is None)]
     halves = (slice(named, middle), slice(middle, None))
     return [table for half in halves for table in _fitting(_columns(sheet, named, half), terminal)]
 
@@ -176,18 +176,27 @@ def _columns(sheet: Sheet, named: int, chosen: slice) -> Sheet:
     return sheet._replace(heads=heads, rows=[row for row in rows if any(row[named:])])
 
 
-def _rich_table(sheet: Sheet) -> Table:
+def _rich_table(sheet: Sheet, folded: bool = False) -> Table:
+    """Return a table; unless cells are folded, a column is one text, laid out at once."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for head in sheet.heads:
         side: Literal["left", "right"] = "left" if head in ("case", "source") else "right"
         whole = head in ("case", "source")
         table.add_column(Text(head), justify=side, overflow="fold", no_wrap=whole)
+    rows = list(_shown(sheet))
+    columns = [Text("\n").join(column) for column in zip(*rows)]
+    for row in rows if folded else [columns] * bool(rows):
+        table.add_row(*row)
+    return table
+
+
+def _shown(sheet: Sheet) -> Iterator[list[Text]]:
+    """Yield the rows; of those of one case, the first has its name."""
     previous = ""
     for row in sheet.rows:
-        shown = ["" if row[0] == previous and "source" in sheet.heads else row[0], *row[1:]]
+        named = "" if row[0] == previous and "source" in sheet.heads else row[0]
+        yield [_coloured(text) for text in (named, *row[1:])]
         previous = row[0]
-        table.add_row(*(_coloured(text) for text in shown))
-    return table
 
 
 def _coloured(text: str) -> Text:
