@@ -120,7 +120,7 @@ def _locked_file(folder: Path) -> tuple[Path, int]:
 
 def _remove_unlocked(path: Path) -> None:
     """Remove a file, or raise OSError where a process holds it or locks cannot tell."""
-    descriptor = os.open(path, os.O_WRONLY)
+    descriptor = os.open(path, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))  # of a pipe: ENXIO
     try:
         lock(descriptor)
         path.unlink(missing_ok=True)

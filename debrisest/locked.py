@@ -47,7 +47,9 @@ def _hold(path: Path) -> int:
             lock(descriptor)
             if path.exists() and os.path.samestat(os.fstat(descriptor), path.stat()):
                 os.ftruncate(descriptor, 0)
-                os.write(descriptor, f"process {os.getpid()} on {socket.gethostname()}".encode())
+                told = f"process {os.getpid()} on {socket.gethostname()}"
+                with suppress(OSError):  # of a disk that is full: the lock holds without a name
+                    os.write(descriptor, told.encode())
                 return descriptor
         except OSError:
             os.close(descriptor)

@@ -144,6 +144,26 @@ def test_a_lock_ends_with_its_process(tmp_path: Path, start: Callable) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_lock_that_has_no_room_for_a_name_holds(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> int:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.write", full)
+    held = pytest.raises(UserError, match="another command writes there")
+    with locked(tmp_path), held, locked(tmp_path):
+        pass
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_pipe_that_is_named_like_a_leftover_is_not_waited_for(tmp_path: Path) -> None:
+    pipe = tmp_path / f".0123456789ab.{socket.gethostname()}.tmp"
+    os.mkfifo(pipe)
+    files.remove_leftovers(tmp_path)
+    assert pipe.exists()
+
+
 @pytest.mark.parametrize("kind", ["folder", "pipe", "loop", "link to a folder"])
 def test_what_is_no_file_is_no_lock(kind: str, small: Path, swept: Path, sweep: Callable) -> None:
     lock = swept / "small" / ".lock"

@@ -1,5 +1,6 @@
 """Files that were replaced by others are never taken for those that were meant."""
 
+import pickle
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -11,8 +12,10 @@ from debrisest.errors import UserError
 from debrisest.results import store
 from debrisest.results.open import find_results, open_results
 from debrisest.results.status import up_to_date
+from debrisest.runner.compute import compute
 from debrisest.runner.plan import plan
 from debrisest.runner.selection import Selection
+from debrisest.runner.step import Step
 from debrisest.scenario.load import load_scenario
 
 ONE = ("--case", "slow", "--estimator", "triad")
@@ -110,3 +113,66 @@ def test_a_file_of_another_case_estimator_or_stage(
     assert "[1/1] small slow: assess triad" in done.stderr
     tables = [folder / "small" / "tables.csv" for folder in (swept, reference)]
     assert tables[0].read_bytes() == tables[1].read_bytes()
+
+
+@pytest.fixture
+def measured(tmp_path: Path, shipped: Path, cli: Callable) -> Path:
+    """A scenario of a file of poses, which lies beside it."""
+    poses = Path(shutil.copy(shipped / "examples" / "poses.csv", tmp_path))
+    assert cli("import", poses).exit_code == 0
+    config, read = poses.with_suffix(".yaml"), "kind: datasets\n  file: poses.h5"
+    text = config.read_text()
+    assert read in text
+    config.write_text(text.replace(read, "kind: poses\n  file: poses.csv"))
+    return config
+
+
+def other_poses(config: Path) -> None:
+    path = config.with_suffix(".csv")
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:-1]))
+
+
+def in_another_process(step: Step) -> Step:
+    return pickle.loads(pickle.dumps(step))
+
+
+@pytest.mark.parametrize("where", [lambda step: step, in_another_process])
+def test_measurements_that_change_between_plan_and_step(
+    where: Callable, measured: Path, tmp_path: Path
+) -> None:
+    """As they do on a worker that has another file by the same path."""
+    step = plan(load_scenario(measured), tmp_path / "out", Selection())[0]
+    other_poses(measured)
+    with pytest.raises(UserError, match=r"changed (while it was read|since this was planned)"):
+        compute([where(step)])
+    assert not step.path.exists()
+    (again, *_) = plan(load_scenario(measured), tmp_path / "out", Selection())
+    compute([again])
+    assert store.inspect(again.path).attributes["stage_key"] == again.key != step.key
+
+
+def test_measurements_that_change_while_they_are_read(
+    measured: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = next(iter(load_scenario(measured).cases.values())).simulation
+    original = type(case.source).read
+
+    def read(source: Any, folder: Path) -> Any:
+        found = original(source, folder)
+        other_poses(measured)
+        return found
+
+    monkeypatch.setattr(type(case.source), "read", read)
+    with pytest.raises(UserError, match=r"poses\.csv: this changed while it was read; run again"):
+        _ = case.measured
+
+
+def test_a_worker_with_another_installed_plug_in(
+    small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    step = plan(load_scenario(small), tmp_path / "out", Selection(cases=["slow"]))[0]
+    part = type(step.case.scenario.sensors["points"])
+    monkeypatch.setattr(part, "plugin", {"plug-in lidar": "0" * 16})
+    with pytest.raises(UserError, match=r"points: plug-in lidar changed: .* or another plug-in"):
+        compute([step])
+    assert not step.path.exists()

@@ -15,8 +15,10 @@ import numpy as np
 
 from debrisest.arrays import Data
 from debrisest.counted import within
+from debrisest.errors import UserError
 from debrisest.results import store
 from debrisest.results.image import as_stored
+from debrisest.results.status import difference
 from debrisest.results.trajectories import thinned
 from debrisest.runner.stages.isolate import isolate
 from debrisest.runner.stages.pipeline import STAGES
@@ -30,6 +32,8 @@ def compute(steps: Sequence[Step]) -> None:
     step = steps[0]
     if step.computed_before:
         return
+    for planned in filter(None, (step, step.then)):
+        _require_planned(planned)
     reads = [_read(one) for one in steps]
     batches = groupby(zip(steps, reads), key=lambda pair: _shapes(pair[1]))
     for chunks, inputs in (zip(*batch) for _, batch in batches):
@@ -39,6 +43,18 @@ def compute(steps: Sequence[Step]) -> None:
             if chunk.then is not None:
                 store.require(chunk.path, chunk.attributes | {"runs": chunk.runs})
                 _write(chunk.then, *_run(chunk.then, read | _seen_later(data, chunk)))
+
+
+def _require_planned(step: Step) -> None:
+    """Raise UserError where a measured file, or a plug-in, is not the one that was planned with."""
+    found = STAGES[step.address.stage].inputs(step.case, step.address.estimator)
+    if json.dumps(found) != json.dumps(step.inputs):
+        raise UserError(
+            f"{difference(step.inputs, found)}: a file changed since this was planned, or a worker "
+            "has another one, or another plug-in; nothing was computed; run again"
+        )
+    if not step.upstream:
+        _ = step.case.measured
 
 
 def _run(step: Step, read: Data) -> tuple[Data, float]:

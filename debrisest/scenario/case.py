@@ -9,6 +9,7 @@ import numpy as np
 
 from debrisest.arrays import Data, IntArray
 from debrisest.clock import Clock
+from debrisest.errors import UserError
 from debrisest.plugins.load import Plugin, load_plugins
 from debrisest.roles import SourcePart
 from debrisest.scenario.models import scenario_model
@@ -60,8 +61,18 @@ class Case:
     @cached_property
     def measured(self) -> Data:
         """Return what the files of a measured scenario hold; nothing for a simulated one."""
+        source, before = self.scenario.measured, self.measured_digest
+        data = {} if source is None else source.read(self.folder)
+        if source is not None and source.digest(self.folder) != before:
+            told = ", ".join(str(self.folder / name) for name in source.files)
+            raise UserError(f"{told or self.folder}: this changed while it was read; run again")
+        return data
+
+    @cached_property
+    def measured_digest(self) -> str:
+        """Return the checksum of these files, taken before they are read."""
         source = self.scenario.measured
-        return {} if source is None else source.read(self.folder)
+        return "" if source is None else source.digest(self.folder)
 
     @property
     def source(self) -> SourcePart | None:
@@ -90,4 +101,5 @@ class Case:
         return {name: np.asarray(value) for name, value in data.items()}
 
     def __getstate__(self) -> dict[str, Any]:
-        return {key: v for key, v in self.__dict__.items() if key not in ("scenario", "measured")}
+        found_here = ("scenario", "measured", "measured_digest")
+        return {key: v for key, v in self.__dict__.items() if key not in found_here}

@@ -6,6 +6,7 @@ Stricter than YAML 1.1: duplicate keys are problems, ``1e-6`` is a number, only 
 
 import re
 from collections.abc import Callable, Collection
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -15,6 +16,8 @@ from debrisest.errors import UNCARRIED
 
 KeyPath = tuple[str | int, ...]
 MOST_VALUES = 300_000
+_LARGE = 100_000
+"""Characters of a text from which on it is read by the quick loader."""
 
 
 class Place(NamedTuple):
@@ -58,6 +61,12 @@ class _Loader(yaml.SafeLoader):
     yaml_implicit_resolvers: dict[Any, Any] = {}
 
 
+class _QuickLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
+    """Written in C, where that is there: ten times as fast, but it says less of what is wrong."""
+
+    yaml_implicit_resolvers: dict[Any, Any] = {}
+
+
 class _Dumper(yaml.SafeDumper):
     """Quotes each text that would be read as something else."""
 
@@ -68,7 +77,7 @@ for _tag, _pattern, _first in (
     ("int", r"[-+]?(0|[1-9][0-9]*)", "-+0123456789"),
     ("float", r"[-+]?([0-9]+\.[0-9]*|\.[0-9]+|[0-9]+)([eE][-+]?[0-9]+)?", "-+.0123456789"),
 ):
-    for _either in (_Loader, _Dumper):
+    for _either in (_Loader, _QuickLoader, _Dumper):
         _either.add_implicit_resolver(
             f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), list(_first)
         )
@@ -84,9 +93,9 @@ def parse(text: str, source: str) -> tuple[Document, list[Problem]]:
     start = Place(source, 1, 1)
     places: dict[KeyPath, Place] = {(): start}
     try:
-        loader = _Loader(text)
+        loader, node = _composed(text)
         reader = _Reader(loader, source, places)
-        value = reader.value(loader.get_single_node(), ())
+        value = reader.value(node, ())
     except yaml.MarkedYAMLError as error:
         return Document({}, places), [Problem(_place(source, error.problem_mark), _said(error))]
     except RecursionError:
@@ -105,6 +114,16 @@ def parse(text: str, source: str) -> tuple[Document, list[Problem]]:
     return Document(value, places), reader.problems
 
 
+def _composed(text: str) -> tuple[Any, Any]:
+    """Return the loader of a text and its node; a large text that has mistakes is read twice."""
+    if len(text) > _LARGE and "\t" not in text:
+        with suppress(yaml.YAMLError):
+            quick = _QuickLoader(text)
+            return quick, quick.get_single_node()
+    loader = _Loader(text)
+    return loader, loader.get_single_node()
+
+
 Required = Callable[[str], Collection[str]]
 """The keys that a kind cannot do without."""
 
@@ -119,14 +138,16 @@ def merge(base: Document, over: Document, required: Required = lambda kind: ()) 
     return Document(merge_values(base.value, over.value, required), base.places | places)
 
 
-def sub_document(document: Document, path: KeyPath) -> Document:
-    """Return the mapping at ``path`` as a document of its own, keeping the places."""
-    value: Any = document.value
-    for key in path:
-        value = value[key]
-    depth = len(path)
-    places = {p[depth:]: at for p, at in document.places.items() if p[:depth] == path}
-    return Document(value if isinstance(value, dict) else {}, places)
+def sub_documents(document: Document, key: str) -> dict[str, Document]:
+    """Return the mappings below a key as documents of their own, by name, keeping the places."""
+    places: dict[str, dict[KeyPath, Place]] = {}
+    for path, place in document.places.items():
+        if len(path) > 1 and path[0] == key:
+            places.setdefault(str(path[1]), {})[path[2:]] = place
+    return {
+        name: Document(value if isinstance(value, dict) else {}, places.get(name, {}))
+        for name, value in document.value[key].items()
+    }
 
 
 def merge_values(base: Any, over: Any, required: Required = lambda kind: ()) -> Any:
@@ -142,7 +163,7 @@ def merge_values(base: Any, over: Any, required: Required = lambda kind: ()) -> 
 class _Reader:
     """Makes plain data of YAML nodes, noting the place of every key and what is wrong."""
 
-    loader: _Loader
+    loader: Any
     source: str
     places: dict[KeyPath, Place]
     problems: list[Problem] = field(default_factory=list)

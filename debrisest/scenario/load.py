@@ -22,7 +22,7 @@ from debrisest.scenario.document import (
     merge,
     nested,
     parse,
-    sub_document,
+    sub_documents,
 )
 from debrisest.scenario.grid import points
 from debrisest.scenario.limits import extreme_numbers
@@ -173,9 +173,12 @@ class _Layers(NamedTuple):
 def _layers_of_cases(document: Document, listed: CasesAndGrid) -> dict[str, _Layers]:
     """Return the layers of every case, grid and cases multiplied out."""
     own = CasesAndGrid.model_fields
-    base = Document({k: v for k, v in document.value.items() if k not in own}, document.places)
-    cases = {name: [base, sub_document(document, ("cases", name))] for name in listed.cases}
-    cases = cases or {NOMINAL: [base]}
+    base = Document(
+        {key: value for key, value in document.value.items() if key not in own},
+        {path: place for path, place in document.places.items() if not {*path[:1]} & {*own}},
+    )
+    changes = sub_documents(document, "cases") if listed.cases else {}
+    cases = {name: [base, changes[name]] for name in listed.cases} or {NOMINAL: [base]}
     if not listed.grid:
         return {name: _Layers(name, documents) for name, documents in cases.items()}
     count = len(cases) * prod(map(len, listed.grid.values()))

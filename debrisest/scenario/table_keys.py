@@ -14,8 +14,8 @@ from debrisest.vocabulary import VOCABULARY, possible_units
 
 
 def _known_quantity(name: str) -> str:
-    if name not in (shown := _quantities()):
-        raise ValueError(f"no table can show {name!r}; {allowed_names(name, shown)}")
+    if name not in VOCABULARY or not VOCABULARY[name].table_unit:
+        raise ValueError(f"no table can show {name!r}; {allowed_names(name, _quantities())}")
     return name
 
 

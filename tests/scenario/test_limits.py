@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from debrisest.scenario import document
 from debrisest.scenario.limits import extreme_numbers
 
 REFUSED = [
@@ -74,3 +75,33 @@ def test_of_mistakes_without_end_the_first_are_told(small: Path, cli: Any) -> No
     assert done.exit_code == 2
     assert "and 4900 more mistakes; mend these first" in done.stderr
     assert "unknown_99" in done.stderr and "unknown_100:" not in done.stderr
+
+
+def large(small: Path) -> str:
+    """The small scenario with so many cases that its text is read by the quick loader."""
+    before = small.read_text().replace("  published: small.csv\n", "").partition("cases:")[0]
+    cases = [f"  c{k}: {{motion: {{rate_deg_s: [{k}e-2, 2, -1]}}}}" for k in range(2500)]
+    text = "\n".join([before.replace("mean: [slow, fast]", "mean: [c1, c2]"), "cases:", *cases])
+    assert len(text) > document._LARGE
+    return text
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("", ""), ("c7:", "ω7:"), ("c9:", "c8:"), ("c9: {", "c9: {{"), ("2,", "\t2,")]
+)
+def test_a_large_file_is_read_as_a_small_one_is(
+    old: str, new: str, small: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = large(small).replace(old, new, 1)
+    quick = document.parse(text, "x.yaml")
+    monkeypatch.setattr(document, "_LARGE", 10**9)
+    assert document.parse(text, "x.yaml") == quick
+
+
+def test_a_mistake_in_one_of_many_cases_has_its_line(small: Path, cli: Any) -> None:
+    text = large(small)
+    line = text[: text.index("c2040:")].count("\n") + 1
+    small.write_text(text.replace("[2040e-2, 2, -1]", "[2040e-2, 2]"))
+    told = cli("validate", small).stderr
+    assert told.startswith(f"{small}:{line}:")
+    assert len(told.splitlines()) == 1

@@ -17,7 +17,7 @@ def inputs(case: Case, _: str) -> dict[str, Any]:
     parts = {name: part.fingerprint() for name, part in scenario.simulation.items()}
     if case.source:
         names = case.source.keys_with(lambda name: Path(name).name)
-        source = case.source.fingerprint() | names | {"digest": case.source.digest(case.folder)}
+        source = case.source.fingerprint() | names | {"digest": case.measured_digest}
         return {"version": VERSION, "measured": source, **parts}
     told = scenario.model_dump(mode="json", include={"seed", "duration_s", "step_s"})
     return {"version": VERSION, "case": case.draws, **told, **parts}
