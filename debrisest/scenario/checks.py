@@ -14,7 +14,7 @@ from debrisest.scenario.case import Case
 from debrisest.scenario.contracts import Found, parts_that_do_not_fit
 from debrisest.scenario.document import KeyPath
 from debrisest.scenario.kept import kept_too_late, not_kept
-from debrisest.scenario.names import same_on_disk
+from debrisest.scenario.names import same_draws, same_on_disk
 from debrisest.scenario.schema import Scenario
 from debrisest.scenario.table_keys import Table
 from debrisest.scenario.window import window_of
@@ -57,6 +57,9 @@ def file_problems(cases: Mapping[str, Case]) -> Found:
             yield ("cases", name, "tables"), "tables belong to the whole file, not to a case"
     for name, why in same_on_disk(first.estimators):
         yield ("estimators", name), why
+    bound = {case.draws: name for name, case in reversed([*cases.items()])}
+    for draws, why in same_draws(dict.fromkeys(case.draws for case in cases.values())):
+        yield ("cases", bound[draws], "draws"), why
     yield from _unknown_cases(first, list(cases))
     refused = (found for case in cases.values() for found in _parts_that_refuse(case))
     yield from dict.fromkeys(refused)

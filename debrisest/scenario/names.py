@@ -84,8 +84,13 @@ def case_name_problems(names: Iterable[str]) -> Iterator[tuple[str, str]]:
             said = f"the grid names this case with {len(name)} letters, at most {MOST_LETTERS} are"
             yield name, f"{said} possible: {name[:40]}...; vary fewer keys, or by cases"
     yield from same_on_disk(names)
+    yield from same_draws(names)
+
+
+def same_draws(names: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Yield the names to which the same draws would be bound as to an earlier one."""
     same = "the draws of both would be the same (their CRC-32 is); choose another name"
-    yield from _not_told_apart(names, case_key, same)
+    return _not_told_apart(names, case_key, same)
 
 
 def same_on_disk(names: Iterable[str]) -> Iterator[tuple[str, str]]:

@@ -171,3 +171,16 @@ def test_titles_are_one_line(small: Path) -> None:
     text = small.read_text().replace("title: A small tumbling body", "title: |\n  two\n  lines\n")
     small.write_text(text)
     assert load_scenario(small).common.title == "two lines"
+
+
+def test_draws_that_would_be_the_same_are_refused(small: Path, cli: Any) -> None:
+    first, second = "v6745-12053", "n16051x"
+    assert zlib.crc32(first.encode()) == zlib.crc32(second.encode())
+    text = small.read_text().replace("  slow: {", f"  slow: {{draws: {first}, ")
+    small.write_text(text.replace("  fast: {}", f"  fast: {{draws: {second}}}"))
+    told = cli("validate", small)
+    line = text[: text.index("  fast: {}")].count("\n") + 1
+    assert told.exit_code == 2
+    assert told.stderr.startswith(f"{small}:{line}:10: cases.fast.draws: beside {first!r}: the ")
+    small.write_text(text.replace("  fast: {}", f"  fast: {{draws: {first}}}"))
+    assert cli("validate", small).exit_code == 0
