@@ -310,6 +310,7 @@ def _of_file(
         damaged = path.read_bytes()
         faulthandler.dump_traceback_later(4 * WATCH_S, exit=True)
         store._labelled.cache_clear()
+        store._is_sealed.cache_clear()
         wrong = list(_outcomes(swept, number, right))
         faulthandler.cancel_dump_traceback_later()
         found.update([(kind, "all"), *((kind, how) for how in wrong)])
