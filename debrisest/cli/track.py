@@ -155,7 +155,8 @@ def _drawn(folder: Path, images: "ImageSequence", found: "Tracked", times: "Arra
 
 def _tell_next(tracks: Path, rig: "Rig | None", pair: bool) -> None:
     if pair:
-        print(f"next: debrisest estimate {shlex.quote(str(tracks))}")
+        file, folder = shlex.quote(str(tracks)), shlex.quote(str(tracks.parent))
+        print(f"next: debrisest estimate {file} --out {folder}")
         return
     print("note: pixels of one camera: estimate needs the body's geometry (--points) beside them")
     if rig is None:

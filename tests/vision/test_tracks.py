@@ -73,7 +73,8 @@ def test_the_sigma_is_that_of_the_errors(rendered: Path, tracked: tuple[Path, st
 
 def test_what_was_found_and_left_out_is_told(tracked: tuple[Path, str]) -> None:
     out, said = tracked
-    for word in ("tracks ", "length ", "noise ", "left out ", "next: debrisest estimate"):
+    words = ("tracks ", "length ", "noise ", "left out ", "next: debrisest estimate")
+    for word in (*words, "/tracks.csv --out "):
         assert word in said
     assert {"tracks.png", "tracks.svg", "strip.png"} <= {path.name for path in out.iterdir()}
 
