@@ -67,10 +67,16 @@ def point_sums(
                         information[run, first + a, first + b] += by_arm[12 + a, b]
             at = turning[run, k], centre[k]
             _add_motion(joint, total, *at, moved, information[run], gradient[run])
-        for a in range(n_e):
-            for b in range(a):
-                information[run, a, b] = information[run, b, a]
+        _mirror(information[run])
     return residual, information, gradient, cost
+
+
+@compiled
+def _mirror(square: Array) -> None:
+    """Write what is below the diagonal from what is above it."""
+    for a in range(len(square)):
+        for b in range(a):
+            square[a, b] = square[b, a]
 
 
 @compiled
