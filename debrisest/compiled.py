@@ -5,6 +5,7 @@ numba, where numba cannot be imported, and where the environment has ``DEBRISEST
 """
 
 import os
+import sys
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from functools import cache
@@ -45,7 +46,7 @@ def compiled(kernel: Kernel) -> Kernel:
 
     config: Any = numba.config
     given = config.CACHE_DIR
-    config.CACHE_DIR = str(folder := _cache(given))
+    config.CACHE_DIR = str(folder := _cache(kernel, given))
     try:
         loops: Any = numba.njit(cache=True, error_model="numpy")(kernel)
         own = folder / f"{kernel.__module__}.{kernel.__qualname__}.lock"
@@ -57,15 +58,25 @@ def compiled(kernel: Kernel) -> Kernel:
         config.CACHE_DIR = given
 
 
-@cache
-def _cache(given: str) -> Path:
-    """Return a folder that is named after the source of all loops.
+def _cache(kernel: Callable[..., object], given: str) -> Path:
+    """Return a folder that is named after the source of all loops that a kernel can call.
 
     Numba looks for changes in a kernel's own file alone, not in those of the kernels that it calls.
     """
-    package = Path(__file__).parent
-    source = b"".join(path.read_bytes() for path in sorted(package.rglob("*_loops.py")))
+    names, package = _reached(kernel.__module__), Path(__file__).parent
+    source = b"".join(Path(str(sys.modules[name].__file__)).read_bytes() for name in names)
     return Path(given or package / "__pycache__") / f"loops-{sha256(source).hexdigest()[:16]}"
+
+
+def _reached(module: str) -> list[str]:
+    """Return the modules of loops whose kernels a module has, its own with them, sorted."""
+    found, left = {module}, [module]
+    while left:
+        values = vars(sys.modules[left.pop()]).values()
+        of = {str(getattr(value, "__module__", "")) for value in values}
+        left += (new := {name for name in of if name.endswith("_loops")} - found)
+        found |= new
+    return sorted(found)
 
 
 def _by_one_process(compile: Callable[[Any], Any], path: Path) -> Callable[[Any], Any]:

@@ -1,5 +1,6 @@
-"""Machine code on disk follows from the source of all loops."""
+"""Machine code on disk follows from the source of the loops that a kernel can call."""
 
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -8,20 +9,29 @@ from debrisest import compiled
 from debrisest.files import lock
 
 
-def test_a_change_of_any_loops_is_another_folder(
+def test_a_change_of_loops_that_are_called_is_another_folder(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(compiled, "__file__", str(tmp_path / "compiled.py"))
-    called, other = tmp_path / "deep" / "called_loops.py", tmp_path / "other.py"
-    called.parent.mkdir()
-    folders = []
-    for text, beside in (("a = 1", ""), ("a = 1", "b = 2"), ("a = 2", "")):
-        called.write_text(text)
-        other.write_text(beside)
-        folders.append(compiled._cache.__wrapped__(""))
-    assert folders[0] == folders[1] != folders[2]
-    assert folders[0].parent == tmp_path / "__pycache__"
-    assert compiled._cache.__wrapped__("/mine").parent == Path("/mine")
+    monkeypatch.syspath_prepend(tmp_path)
+    inner = "def inner(): ..."
+    sources = {
+        "inner_loops": inner,
+        "outer_loops": "from inner_loops import inner\ndef outer(): inner()",
+        "caller_loops": "from outer_loops import outer\ndef caller(): outer()",
+        "other_loops": "def other(): ...",
+    }
+    for name, text in sources.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    caller = import_module("caller_loops").caller
+    other = import_module("other_loops").other
+    assert compiled._reached("caller_loops") == ["caller_loops", "inner_loops", "outer_loops"]
+    before = compiled._cache(caller, ""), compiled._cache(other, "")
+    (tmp_path / "inner_loops.py").write_text(inner + "\n")
+    assert compiled._cache(caller, "") != before[0]
+    assert compiled._cache(other, "") == before[1] == compiled._cache(other, "")
+    assert before[0].parent == tmp_path / "__pycache__"
+    assert compiled._cache(caller, "/mine").parent == Path("/mine")
 
 
 def test_what_others_keep_of_numba_stays_where_it_was() -> None:

@@ -8,6 +8,7 @@ from debrisest.batch.arc_loops import along, derivatives
 from debrisest.batch.point_loops import normal
 from debrisest.compiled import compiled
 from debrisest.dynamics.log_inertia import BASIS
+from debrisest.linear_algebra_loops import solve
 
 Arcs = tuple[Array, Array, Array]
 """Attitude (4), rate (3) and log-ratios (5) of an arc at its epoch."""
@@ -128,7 +129,7 @@ def _stepped(pull: Array, hold: Array, damping: float, step: Array) -> float:
         for j in range(11):
             matrix[i, j] = scale[i] * hold[i, j] * scale[j]
         matrix[i, i] += damping
-    _solve(matrix, right)
+    solve(matrix, right)
     step[:] = scale * right
     gain = 0.0
     for i in range(11):
@@ -137,18 +138,3 @@ def _stepped(pull: Array, hold: Array, damping: float, step: Array) -> float:
             bent += hold[i, j] * step[j]
         gain += step[i] * (2.0 * pull[i] - bent)
     return gain
-
-
-@compiled
-def _solve(matrix: Array, right: Array) -> None:
-    """Replace the right side of a positive system by its solution."""
-    for k in range(len(right)):
-        for i in range(k + 1, len(right)):
-            share = matrix[k, i] / matrix[k, k]
-            right[i] -= share * right[k]
-            for j in range(i, len(right)):
-                matrix[i, j] -= share * matrix[k, j]
-    for k in range(len(right) - 1, -1, -1):
-        for i in range(k + 1, len(right)):
-            right[k] -= matrix[k, i] * right[i]
-        right[k] /= matrix[k, k]
