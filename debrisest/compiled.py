@@ -42,18 +42,27 @@ def available() -> bool:
 
 def compiled(kernel: Kernel) -> Kernel:
     """Return the loops compiled, by the cache on disk where there is a place for one."""
+    return _compiled(kernel)
+
+
+def compiled_sum(kernel: Kernel) -> Kernel:
+    """The same of loops that only add up: in any order, so that the sums become vectors."""
+    return _compiled(kernel, fastmath={"reassoc", "contract", "nsz"})
+
+
+def _compiled(kernel: Kernel, **options: Any) -> Kernel:
     import numba
 
     config: Any = numba.config
     given = config.CACHE_DIR
     config.CACHE_DIR = str(folder := _cache(kernel, given))
     try:
-        loops: Any = numba.njit(cache=True, error_model="numpy")(kernel)
+        loops: Any = numba.njit(cache=True, error_model="numpy", **options)(kernel)
         own = folder / f"{kernel.__module__}.{kernel.__qualname__}.lock"
         loops.compile = _by_one_process(loops.compile, own)
         return cast(Kernel, loops)
     except RuntimeError:
-        return cast(Kernel, numba.njit(error_model="numpy")(kernel))
+        return cast(Kernel, numba.njit(error_model="numpy", **options)(kernel))
     finally:
         config.CACHE_DIR = given
 

@@ -9,10 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.batch.arc import UNKNOWNS, Arc, along
 from debrisest.batch.evidence import Evidence, Told
+from debrisest.batch.point_sums import KnownPoints
 
 _BLOCKS = 20
 _SIGMAS = 5.0  # of the chi-square distribution
@@ -57,20 +59,36 @@ class Fit(NamedTuple):
 
 def tested(evidence: Evidence, arc: Arc) -> Fit:
     """Return the tests of an arc."""
-    q, rate = along(arc, evidence.times)
-    told = evidence.settled(q).told(q, rate)
+    if isinstance(evidence, KnownPoints) and compiled.available():
+        chi2, values, limits, measured = _by_loops(evidence, arc)
+    else:
+        chi2, values, limits, measured = _by_numpy(evidence, arc)
     fitted = UNKNOWNS - evidence.unknowns_fixed
-    dof = max(float(evidence.dof.sum()) - fitted, 1.0)
-    excess = max(float(told.chi2.sum()) / dof, 1e-12)
-    owner, limits = _blocks(evidence)
-    count = owner.max() + 1
-    turned = told if evidence.of_rate else _in_body(told, q)
-    values = [_offsets(part, owner, count) for part in (told, turned)]
+    dof = max(float(measured) - fitted, 1.0)
+    excess = max(chi2 / dof, 1e-12)
     worst = max(values, key=lambda value: float(value.sum())) / max(excess, LEAST_NOISE)
-    dof_blocks = max(3.0 * count - fitted, 3.0)
+    dof_blocks = max(3.0 * len(worst) - fitted, 3.0)
     limit = 1.0 + _SIGMAS * np.sqrt(2.0 / dof_blocks)
     offset = float(worst.sum()) / dof_blocks
     return Fit(dof * excess, dof, worst / 3.0, limits, offset, float(limit))
+
+
+def _by_numpy(evidence: Evidence, arc: Arc) -> tuple[float, Array, Array, float]:
+    """Chi-square, that of the blocks' offsets in two frames, the blocks' limits, and all dof."""
+    q, rate = along(arc, evidence.times)
+    told = evidence.settled(q).told(q, rate)
+    owner, limits = _blocks(evidence)
+    turned = told if evidence.of_rate else _in_body(told, q)
+    values = np.stack([_offsets(part, owner, owner.max() + 1) for part in (told, turned)])
+    return float(told.chi2.sum()), values, limits, float(evidence.dof.sum())
+
+
+def _by_loops(evidence: KnownPoints, arc: Arc) -> tuple[float, Array, Array, float]:
+    """The same by compiled loops."""
+    from debrisest.batch.window_loops import offsets
+
+    times, (points, weight) = evidence.times, evidence.for_loops
+    return offsets(times, times - arc.epoch, points, weight, arc[1:], _BLOCKS)
 
 
 def _blocks(evidence: Evidence) -> tuple[IntArray, Array]:

@@ -5,10 +5,13 @@ import math
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.attitude.rotation_loops import conjugate, matrix_of, product
+from debrisest.attitude.rotation_loops import Quaternion, multiplied, rows_of
 from debrisest.compiled import compiled
-from debrisest.dynamics.torque_free_loops import at, body_of
+from debrisest.dynamics.log_inertia import BASIS
+from debrisest.dynamics.torque_free_loops import at, at_epoch, body_of
 
+Arcs = tuple[Array, Array, Array]
+"""Attitude (4), rate (3) and log-ratios (5) of an arc at its epoch, or of several."""
 _SWEEPS = 12  # of Jacobi's rotations, of which four or five are needed
 
 
@@ -19,9 +22,26 @@ def along(times: Array, q: Array, rate: Array, log_inertia: Array) -> tuple[Arra
     ``q (copy, 4)``, ``rate (copy, 3)``, and ``log_inertia (copy, 3, 3)`` as matrices.
     """
     q_if, rates = np.empty((len(q), len(times), 4)), np.empty((len(q), len(times), 3))
+    q_one, rate_one = np.empty((4, len(times))), np.empty((3, len(times)))
     for copy in range(len(q)):
-        _one(times, q[copy], rate[copy], log_inertia[copy], q_if[copy], rates[copy])
+        motion(times, q[copy], rate[copy], log_inertia[copy], q_one, rate_one)
+        for t in range(len(times)):
+            for i in range(4):
+                q_if[copy, t, i] = q_one[i, t]
+            for i in range(3):
+                rates[copy, t, i] = rate_one[i, t]
     return q_if, rates
+
+
+@compiled
+def matrix_of(logs: Array) -> Array:
+    """Log-ratios (5) as a matrix (3, 3)."""
+    matrix = np.zeros((3, 3))
+    for n in range(5):
+        for i in range(3):
+            for j in range(3):
+                matrix[i, j] += logs[n] * BASIS[n, i, j]
+    return matrix
 
 
 @compiled
@@ -49,49 +69,75 @@ def derivatives(q: Array, rate: Array, step: Array) -> tuple[Array, Array]:
 
 
 @compiled
-def _one(times: Array, q0: Array, rate0: Array, matrix: Array, q_if: Array, rates: Array) -> None:
-    """Write the motion of one arc."""
-    moments, q_fb = _principal(matrix)
-    axes = matrix_of(q_fb)
-    body = body_of(axes.T @ rate0, moments)
-    axes = axes[:, body[-1]].copy()
-    rate, about = np.empty((3, 1 + len(times))), np.empty((4, 1 + len(times)))
-    unit, by = np.zeros(4), np.empty((4, 4))
-    at(np.zeros(1), body, rate, about)
-    unit[0], unit[1 + body[-1]] = about[0, 0], about[1:, 0]
-    left = product(product(q0, q_fb), conjugate(unit)) / np.sum(unit**2)
-    for k in range(4):
-        unit[:] = 0.0
-        unit[0 if k == 0 else 1 + body[-1][k - 1]] = 1.0
-        by[:, k] = product(product(left, unit), conjugate(q_fb))
-    at(times, body, rate, about)
+def motion(times: Array, q0: Array, rate0: Array, matrix: Array, q_if: Array, rates: Array) -> None:
+    """Write attitudes (4, time) and rates (3, time) of one arc."""
+    moments, to_body = _principal(matrix)
+    to_f = (to_body[0], -to_body[1], -to_body[2], -to_body[3])
+    axes, rate_b = np.array(rows_of(to_body)), np.zeros(3)
+    for i in range(3):
+        for j in range(3):
+            rate_b[i] += axes[j, i] * rate0[j]
+    body = body_of(rate_b, moments)
+    order = body[-1]
+    about = np.empty((4, len(times)))
+    at(times, body, rates, about)
+    a, b, c, d = at_epoch(body)
+    back, by = np.zeros(4), np.empty((4, 4))
+    back[0], per = a, 1.0 / (a * a + b * b + c * c + d * d)
+    back[1 + order[0]], back[1 + order[1]], back[1 + order[2]] = -b, -c, -d
+    left = multiplied((q0[0], q0[1], q0[2], q0[3]), to_body)
+    left = multiplied(left, (per * back[0], per * back[1], per * back[2], per * back[3]))
+    by[:, 0] = multiplied(left, to_f)
+    for k in range(3):
+        i = order[k]
+        unit = (0.0, 1.0 * (i == 0), 1.0 * (i == 1), 1.0 * (i == 2))
+        by[:, 1 + k] = multiplied(multiplied(left, unit), to_f)
     for i in range(4):
         a, b, c, d = by[i]
         for t in range(len(times)):
-            q_if[t, i] = a * about[0, t] + b * about[1, t] + c * about[2, t] + d * about[3, t]
-    for i in range(3):
-        a, b, c = axes[i]
-        for t in range(len(times)):
-            rates[t, i] = a * rate[0, t] + b * rate[1, t] + c * rate[2, t]
+            q_if[i, t] = a * about[0, t] + b * about[1, t] + c * about[2, t] + d * about[3, t]
+    for t in range(len(times)):
+        a, b, c = rates[0, t], rates[1, t], rates[2, t]
+        for i in range(3):
+            x, y, z = axes[i, order[0]], axes[i, order[1]], axes[i, order[2]]
+            rates[i, t] = x * a + y * b + z * c
 
 
 @compiled
-def _principal(matrix: Array) -> tuple[Array, Array]:
-    """Principal moments (3) and ``q_fb`` of the principal axes, by Jacobi's rotations."""
-    a, q_fb = matrix.copy(), np.array([1.0, 0.0, 0.0, 0.0])
+def _principal(matrix: Array) -> tuple[Array, Quaternion]:
+    """Principal moments (3) and ``q_fb`` of the principal axes."""
+    moments = matrix.copy()
+    q_fb = diagonalised(moments, 1e-18)
+    return np.exp(np.diag(moments)), q_fb
+
+
+@compiled
+def diagonalised(a: Array, least: float) -> Quaternion:
+    """Turn a symmetric matrix (3, 3) into its own axes, by Jacobi's rotations, and return these.
+
+    What is beside the diagonal is ``least`` at most.
+    """
+    axes = (1.0, 0.0, 0.0, 0.0)
     for _ in range(_SWEEPS):
-        if not np.abs(a[0, 1]) + np.abs(a[1, 2]) + np.abs(a[0, 2]) > 1e-18:
+        if not abs(a[0, 1]) + abs(a[1, 2]) + abs(a[0, 2]) > least:
             break
         for i in range(3):
-            j = (i + 1) % 3
-            if a[i, j] != 0.0:
-                q_fb = product(q_fb, _rotated(a, i, j))
-    return np.exp(np.diag(a)), q_fb / math.sqrt(np.sum(q_fb**2))
+            if a[i, (i + 1) % 3] != 0.0:
+                cos, sin = _rotated(a, i, (i + 1) % 3)
+                j = (i + 2) % 3
+                turn = (cos, -sin * (j == 0), -sin * (j == 1), -sin * (j == 2))
+                axes = multiplied(axes, turn)
+    w, x, y, z = axes
+    per = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
+    return per * w, per * x, per * y, per * z
 
 
 @compiled
-def _rotated(a: Array, i: int, j: int) -> Array:
-    """Turn a symmetric matrix in the plane of two axes until its element there is zero."""
+def _rotated(a: Array, i: int, j: int) -> tuple[float, float]:
+    """Turn a symmetric matrix in the plane of two axes until its element there is zero.
+
+    Return cosine and sine of half the turn.
+    """
     ratio = (a[j, j] - a[i, i]) / (2.0 * a[i, j])
     tangent = math.copysign(1.0, ratio) / (abs(ratio) + math.sqrt(ratio * ratio + 1.0))
     cos = 1.0 / math.sqrt(tangent * tangent + 1.0)
@@ -100,7 +146,5 @@ def _rotated(a: Array, i: int, j: int) -> Array:
         a[k, i], a[k, j] = cos * a[k, i] - sin * a[k, j], sin * a[k, i] + cos * a[k, j]
     for k in range(3):
         a[i, k], a[j, k] = cos * a[i, k] - sin * a[j, k], sin * a[i, k] + cos * a[j, k]
-    turn = np.zeros(4)
-    turn[0] = math.sqrt(0.5 + 0.5 * cos)
-    turn[1 + (j + 1) % 3] = -0.5 * sin / turn[0]
-    return turn
+    half = math.sqrt(0.5 + 0.5 * cos)
+    return half, 0.5 * sin / half

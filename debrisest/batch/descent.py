@@ -93,7 +93,7 @@ def _descended(
     assert evidence.of_known_points is not None
     product, hold, squares = evidence.of_known_points
     told = evidence.times - arcs.epoch, product, hold, float(squares.sum())
-    settings = least_gain, PRIOR_SIGMA, _WIDEST, _LEAST_DAMPING, _MOST_DAMPING, TURN_OF_STEP
+    settings = for_loops(least_gain)
     centre, information = (np.stack(parts) for parts in zip(*held))
     prior = centre, information
     chi2, holds, settled = descents(told, arcs[1:], prior, iterations, settings)
@@ -101,6 +101,11 @@ def _descended(
         Descent(chosen(arcs, k), float(chi2[k]), holds[k], bool(settled[k]))
         for k in range(len(chi2))
     ]
+
+
+def for_loops(least_gain: float = SMALLEST_GAIN) -> tuple[float, float, float, float, float, float]:
+    """Return the settings of `descent_loops`."""
+    return least_gain, PRIOR_SIGMA, _WIDEST, _LEAST_DAMPING, _MOST_DAMPING, TURN_OF_STEP
 
 
 class _Walks:

@@ -4,18 +4,19 @@ import numpy as np
 
 from debrisest.arrays import Array, BoolArray
 from debrisest.attitude.rotation_loops import product
-from debrisest.batch.arc_loops import along, derivatives
-from debrisest.batch.point_loops import normal
+from debrisest.batch.arc_loops import Arcs, matrix_of, motion
+from debrisest.batch.normal_loops import Work, normal, room
 from debrisest.compiled import compiled
-from debrisest.dynamics.log_inertia import BASIS
 from debrisest.linear_algebra_loops import solve
 
-Arcs = tuple[Array, Array, Array]
-"""Attitude (4), rate (3) and log-ratios (5) of an arc at its epoch."""
 Told = tuple[Array, Array, Array, float]
 """Times since the epoch, and sums of known points: two of each epoch (time, 3, 3), and squares."""
 Settings = tuple[float, float, float, float, float, float]
 """Least gain, sigma of the wide prior, widest log-ratios, least damping, most, turn of a step."""
+Epochs = tuple[Array, Array, Array, float, float]
+"""Times since the epoch, the two sums as (9, time) and (6, time), squares, and the longest time."""
+Room = tuple[Array, Array, Work]
+"""For attitudes (9, 4, time) and rates (3, time) of an arc and eight beside it, and for a block."""
 
 
 @compiled
@@ -28,35 +29,60 @@ def descents(
     the priors, of which ``held`` are centre (arc, 5) and information (arc, 5, 5), and which arcs
     have settled.
     """
-    count = len(arcs[0])
+    count, times, epochs = len(arcs[0]), len(told[0]), _by_number(told)
+    place = room_of(times)
     chi2, holds = np.empty(count), np.empty((count, 11, 11))
     settled = np.zeros(count, dtype=np.bool_)
     for n in range(count):
         arc, prior = (arcs[0][n], arcs[1][n], arcs[2][n]), (held[0][n], held[1][n])
-        chi2[n], settled[n] = _descent(told, arc, prior, iterations, settings, holds[n])
+        chi2[n], settled[n] = descent(epochs, arc, prior, iterations, settings, place, holds[n])
     return chi2, holds, settled
 
 
 @compiled
-def _descent(
-    told: Told,
+def room_of(times: int) -> Room:
+    """Return room for so many epochs."""
+    return np.empty((9, 4, times)), np.empty((3, times)), room()
+
+
+@compiled
+def _by_number(told: Told) -> Epochs:
+    """Return what the epochs say with the epochs last."""
+    times, product_, hold, squares = told
+    one, other, longest = np.empty((9, len(times))), np.empty((6, len(times))), 0.0
+    for t in range(len(times)):
+        longest, k = max(longest, abs(times[t])), 0
+        for i in range(3):
+            for j in range(3):
+                one[3 * i + j, t] = product_[t, i, j]
+                if j >= i:
+                    other[k, t] = hold[t, i, j]
+                    k += 1
+    return times, one, other, squares, longest
+
+
+@compiled
+def descent(
+    epochs: Epochs,
     arc: Arcs,
     held: tuple[Array, Array],
     iterations: int,
     settings: Settings,
+    place: Room,
     hold: Array,
 ) -> tuple[float, bool]:
-    """Move one arc, and write its information."""
+    """Move one arc, and write its information; return chi-square, and whether it has settled."""
     least_gain, _, _, least, most, _ = settings
-    step, damping = np.empty(11), 1e-6
-    chi2, lowest, pull, hold[:] = _at(told, arc, held, settings)
+    step, damping, scratch = np.empty(11), 1e-6, (np.empty((11, 11)), np.empty(11), np.empty(11))
+    pull, new_pull, new_hold = np.empty(11), np.empty(11), np.empty((11, 11))
+    chi2, lowest = _at(epochs, arc, held, settings, place, pull, hold)
     for _ in range(iterations):
-        if _stepped(pull, hold, damping, step) < least_gain:
+        if _stepped(pull, hold, damping, step, scratch) < least_gain:
             return chi2, True
         moved = _displaced(arc, step)
-        new, total, new_pull, new_hold = _at(told, moved, held, settings)
+        new, total = _at(epochs, moved, held, settings, place, new_pull, new_hold)
         if total < lowest:
-            chi2, lowest, pull, hold[:] = new, total, new_pull, new_hold
+            chi2, lowest, pull[:], hold[:] = new, total, new_pull, new_hold
             arc[0][:], arc[1][:], arc[2][:] = moved
             damping = max(0.1 * damping, least)
         elif damping > most:
@@ -68,44 +94,44 @@ def _descent(
 
 @compiled
 def _at(
-    told: Told, arc: Arcs, held: tuple[Array, Array], settings: Settings
-) -> tuple[float, float, Array, Array]:
-    """Chi-square, cost, pull (11) and information (11, 11)."""
+    epochs: Epochs,
+    arc: Arcs,
+    held: tuple[Array, Array],
+    settings: Settings,
+    place: Room,
+    pull: Array,
+    hold: Array,
+) -> tuple[float, float]:
+    """Return chi-square and cost, and write pull (11) and information (11, 11)."""
     _, wide, widest, _, _, turn = settings
-    times, logs = told[0], arc[2]
+    times, one, other, squares, longest = epochs
+    q, rates, work = place
+    logs = arc[2]
     if not np.sqrt(np.sum(logs**2)) < widest:
-        return np.inf, np.inf, np.zeros(11), np.zeros((11, 11))
-    step, span = np.empty((1, 8)), 1.0
-    for t in range(len(times)):
-        span = max(span, 1.0 + abs(times[t]))
-    step[0, :3], step[0, 3:] = turn / span, turn / (1.0 + np.sqrt(np.sum(arc[1] ** 2)) * span)
-    q, rate = along(times, *_copies(arc, step[0]))
-    turn_by, _ = derivatives(q.reshape(1, 9, -1, 4), rate.reshape(1, 9, -1, 3), step)
-    fits, pulls, holds = normal(q[:1], turn_by, told[1], told[2])
-    off = logs - held[0]
-    pulled = held[1] @ off
-    pulls[0, 6:] -= logs * wide**-2.0 + pulled
-    holds[0, 6:, 6:] += held[1]
-    for i in range(6, 11):
-        holds[0, i, i] += wide**-2.0
-    chi2 = told[3] - 2.0 * fits[0]
-    total = chi2 + np.sum(logs**2) / wide**2 + np.sum(off * pulled)
-    return chi2, total if np.isfinite(total) else np.inf, pulls[0], holds[0]
-
-
-@compiled
-def _copies(arc: Arcs, step: Array) -> tuple[Array, Array, Array]:
-    """Attitudes, rates and log-ratios as matrices of an arc, and of eight beside it."""
-    q, rate, logs = np.empty((9, 4)), np.empty((9, 3)), np.zeros((9, 3, 3))
-    for n in range(9):
-        q[n], rate[n] = arc[0], arc[1]
-        for k in range(5):
-            logs[n] += arc[2][k] * BASIS[k]
-    for n in range(3):
-        rate[n + 1, n] += step[n]
-    for k in range(5):
-        logs[k + 4] += step[3 + k] * BASIS[k]
-    return q, rate, logs
+        pull[:], hold[:] = 0.0, 0.0
+        return np.inf, np.inf
+    step, span = np.empty(8), 1.0 + longest
+    step[:3], step[3:] = turn / span, turn / (1.0 + np.sqrt(np.sum(arc[1] ** 2)) * span)
+    rate, log = arc[1].copy(), logs.copy()
+    for k in range(9):
+        if k > 0:
+            rate[:], log[:] = arc[1], logs
+        if 0 < k < 4:
+            rate[k - 1] += step[k - 1]
+        elif k > 3:
+            log[k - 4] += step[k - 1]
+        motion(times, arc[0], rate, matrix_of(log), q[k], rates)
+    chi2 = squares - 2.0 * normal(q, step, (one, other), work, pull, hold)
+    total = chi2
+    for i in range(5):
+        pulled = 0.0
+        for j in range(5):
+            pulled += held[1][i, j] * (logs[j] - held[0][j])
+            hold[6 + i, 6 + j] += held[1][i, j]
+        pull[6 + i] -= logs[i] * wide**-2.0 + pulled
+        hold[6 + i, 6 + i] += wide**-2.0
+        total += logs[i] ** 2 / wide**2 + (logs[i] - held[0][i]) * pulled
+    return chi2, total if np.isfinite(total) else np.inf
 
 
 @compiled
@@ -119,9 +145,11 @@ def _displaced(arc: Arcs, error: Array) -> Arcs:
 
 
 @compiled
-def _stepped(pull: Array, hold: Array, damping: float, step: Array) -> float:
+def _stepped(
+    pull: Array, hold: Array, damping: float, step: Array, scratch: tuple[Array, Array, Array]
+) -> float:
     """Write the step (11), and return by how much it should lower the chi-square."""
-    matrix, right, scale = np.empty((11, 11)), np.empty(11), np.empty(11)
+    matrix, right, scale = scratch
     for i in range(11):
         scale[i] = 1.0 / np.sqrt(max(hold[i, i], np.finfo(np.float64).tiny))
     for i in range(11):
@@ -130,8 +158,9 @@ def _stepped(pull: Array, hold: Array, damping: float, step: Array) -> float:
             matrix[i, j] = scale[i] * hold[i, j] * scale[j]
         matrix[i, i] += damping
     solve(matrix, right)
-    step[:] = scale * right
     gain = 0.0
+    for i in range(11):
+        step[i] = scale[i] * right[i]
     for i in range(11):
         bent = 0.0
         for j in range(11):

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.batch.acceptance import LEAST_NOISE, tested
@@ -46,13 +47,25 @@ def mean_residuals(evidence: KnownPoints, arc: Arc, excess: float) -> Array:
     ``excess`` is the variance of the noise in units of the one given.
     """
     q = along(arc, evidence.times)[0]
+    total, variance = (_by_loops if compiled.available() else _by_numpy)(evidence, q)
+    variance = variance * max(excess, LEAST_NOISE)
+    return np.asarray(total / np.sqrt(np.maximum(variance, np.finfo(float).tiny)))
+
+
+def _by_numpy(evidence: KnownPoints, q: Array) -> tuple[Array, Array]:
+    """Length and variance (feature,) of the sums of weighted residuals in body axes."""
     residual = np.nan_to_num(evidence.residuals(q)) @ quaternion.to_matrix(q)
     weight = evidence.tracks.weight
     share = weight / np.maximum(weight.sum(axis=1, keepdims=True), np.finfo(float).tiny)
     total = np.linalg.norm(np.sum(weight[..., None] * residual, axis=0), axis=-1)
-    variance = np.sum(weight * (1.0 - share), axis=0)
-    variance *= max(excess, LEAST_NOISE)
-    return np.asarray(total / np.sqrt(np.maximum(variance, np.finfo(float).tiny)))
+    return np.asarray(total), np.asarray(np.sum(weight * (1.0 - share), axis=0))
+
+
+def _by_loops(evidence: KnownPoints, q: Array) -> tuple[Array, Array]:
+    """The same by compiled loops."""
+    from debrisest.batch.known_points_loops import mean_residuals
+
+    return mean_residuals(*evidence.for_loops, np.ascontiguousarray(q.T))
 
 
 def _refitted(

@@ -4,6 +4,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import quaternion
 from debrisest.batch.arc import RATE, TURN, UNKNOWNS, Arc, along, joined, stacked
@@ -46,7 +47,13 @@ def path_of(arc: Arc, spread: Spread, times: Array) -> Path:
     Nothing is linearised: the size of a rate may be known far better than its direction, and
     errors then lie on a sphere, not on a plane.
     """
-    sides = [side for part in spread for side in (part.ahead, part.behind)]
+    q, rate, joint = (_by_loops if compiled.available() else _by_numpy)(arc, spread, times)
+    return Path(times, q, rate, joint[:, TURN, TURN], joint[:, RATE, RATE], joint)
+
+
+def _by_numpy(arc: Arc, spread: Spread, times: Array) -> tuple[Array, Array, Array]:
+    """Attitudes, rates and joint covariance."""
+    sides = spread.sides
     q, rates = along(joined(stacked([arc]), *sides), times)
     turns = quaternion.log(quaternion.multiply(q[1:], quaternion.conjugate(q[0])))
     inertias = np.concatenate([side.log_inertia - arc.log_inertia for side in sides])
@@ -55,8 +62,14 @@ def path_of(arc: Arc, spread: Spread, times: Array) -> Path:
     ends = np.split(errors, np.cumsum([len(side.q) for side in sides])[:-1])
     moved = [halved(ends[2 * k], ends[2 * k + 1], part.far) for k, part in enumerate(spread)]
     ways = np.moveaxis(spread.ways(moved), 0, 1)
-    joint = np.asarray(np.swapaxes(ways, -1, -2) @ ways)
-    return Path(times, q[0], rates[0], joint[:, TURN, TURN], joint[:, RATE, RATE], joint)
+    return q[0], rates[0], np.asarray(np.swapaxes(ways, -1, -2) @ ways)
+
+
+def _by_loops(arc: Arc, spread: Spread, times: Array) -> tuple[Array, Array, Array]:
+    """The same by compiled loops."""
+    from debrisest.batch.path_loops import path
+
+    return path(times - arc.epoch, *spread.for_loops(arc))
 
 
 def unknown_path(times: Array) -> Path:

@@ -60,6 +60,13 @@ class KnownPoints:
         return np.swapaxes(measured, -1, -2) @ weighted, trace * np.eye(3) - spread, squares
 
     @property
+    def for_loops(self) -> tuple[tuple[Array, Array, Array], Array]:
+        """What `known_points_loops` take: points, places and evenness of noise, and weights."""
+        tracked = self.tracks
+        points = tracked.points, np.ascontiguousarray(self.model), tracked.even
+        return points, np.ascontiguousarray(tracked.weight)
+
+    @property
     def of_known_points(self) -> tuple[Array, Array, Array]:
         """The sums."""
         return self.sums
@@ -129,6 +136,10 @@ class KnownPoints:
             kept = type(self)(kept.tracks.without(worst), self.model)
         few = kept.tracks.seen.sum() < _FEWEST_KEPT * self.tracks.seen.sum()
         return self if few else kept
+
+    def weighed(self, weight: Array) -> Self:
+        """Return it with other weights (time, feature)."""
+        return type(self)(self.tracks._replace(weight=weight), self.model)
 
     def squares(self, q: Array, rate: Array) -> Array:
         """Return squares of the residuals (time, feature) over what the noise lets expect."""

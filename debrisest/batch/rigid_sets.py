@@ -7,11 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray
 from debrisest.batch.row_median import row_median
 from debrisest.batch.tracks import Tracks
 
 _TO_SIGMA = 1.4826  # from the median deviation of Gaussian noise
+_OF_A_POINT = _TO_SIGMA / np.sqrt(2.0)
 _RIGID_SHARE = 0.2  # of all pairs, at least so many are rigid
 _FEWEST_COMMON = 4
 _LOOSE, _SPREAD = 1.5, 4.0  # limit of a pair's noise, and how it widens with few epochs
@@ -36,6 +38,8 @@ class Pairs(NamedTuple):
 
 def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
     """Return how constant the distances are: about their median, or those of a known body."""
+    if compiled.available():
+        return _pairs_compiled(tracks, model)
     seen, points = _by_feature(tracks)
     partners = np.triu(_partners(seen))
     features = len(seen)
@@ -52,8 +56,23 @@ def pairs(tracks: Tracks, model: Array | None = None) -> Pairs:
         if model is not None:
             middle = np.linalg.norm(model - model[i], axis=-1)[enough]
         length[i, enough] = middle
-        noise[i, enough] = _TO_SIGMA / np.sqrt(2.0) * row_median(np.abs(shown - middle[:, None]))
+        noise[i, enough] = _OF_A_POINT * row_median(np.abs(shown - middle[:, None]))
     return Pairs(*(np.where(np.tri(features, dtype=bool), p.T, p) for p in (length, noise, common)))
+
+
+def _pairs_compiled(tracks: Tracks, model: Array | None) -> Pairs:
+    from debrisest.batch import rigid_sets_loops
+
+    seen = tracks.seen
+    given = np.zeros((0, 0))
+    if model is not None:
+        given = np.linalg.norm(model - model[:, None], axis=-1)
+    partners = _partners(np.ascontiguousarray(seen.T))
+    return Pairs(
+        *rigid_sets_loops.pairs(
+            tracks.points, seen, partners, given, _FEWEST_COMMON, float(_OF_A_POINT)
+        )
+    )
 
 
 def _by_feature(tracks: Tracks) -> tuple[BoolArray, Array]:
@@ -116,6 +135,11 @@ def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
 
     So wrong matches are told before any motion is known, also two that are swapped.
     """
+    limit = _ODD * np.sqrt(2.0) * sigma
+    if compiled.available():
+        from debrisest.batch import rigid_sets_loops
+
+        return rigid_sets_loops.odd_points(tracks.points, tracks.seen, found.length, float(limit))
     shown, points = _by_feature(tracks)
     compared = np.triu(np.isfinite(found.length))
     odd = np.zeros(shown.shape, dtype=bool)
@@ -127,7 +151,7 @@ def odd_points(tracks: Tracks, found: Pairs, sigma: float) -> BoolArray:
             off = (
                 np.linalg.norm(points[others] - points[i], axis=-1) - found.length[i, others, None]
             )
-            near = votes & (np.abs(off) < _ODD * np.sqrt(2.0) * sigma)
+            near = votes & (np.abs(off) < limit)
             for total, part in ((asked, votes), (agreed, near)):
                 total[i] += part.sum(axis=0)
                 total[others] += part
@@ -148,6 +172,10 @@ def _among(found: Pairs, sigma: float, points: BoolArray) -> BoolArray:
 
 def _grown(votes: Array, seed: int) -> BoolArray:
     """Return the set about a point: others join, those with most agreement first."""
+    if compiled.available():
+        from debrisest.batch import rigid_sets_loops
+
+        return rigid_sets_loops.grown(votes, seed, _AGREED)
     members = np.zeros(len(votes), dtype=bool)
     asked, agreed = np.zeros((2, len(votes)))
     newest = seed

@@ -11,9 +11,10 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest import compiled
+from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
-from debrisest.batch.arc import Arc, chosen, displaced
+from debrisest.batch.arc import Arc, chosen, displaced, joined, stacked
 
 FAR = 3.0
 """Sigmas at which the sides are looked for: what is claimed within three holds within three."""
@@ -67,8 +68,24 @@ class Spread(NamedTuple):
 
     def covariance(self, arc: Arc) -> Array:
         """Return that of the errors of the unknowns (11, 11)."""
+        if compiled.available():
+            from debrisest.batch.path_loops import path
+
+            return np.asarray(path(np.zeros(1), *self.for_loops(arc))[2][0])
         ways = self.ways([sides.moved(arc) for sides in self])
         return np.asarray(ways.T @ ways)
+
+    @property
+    def sides(self) -> list[Arc]:
+        """Return the arcs ahead and behind, part by part."""
+        return [side for part in self for side in (part.ahead, part.behind)]
+
+    def for_loops(self, arc: Arc) -> tuple[tuple[Array, Array, Array], Array, IntArray]:
+        """Return what `path_loops` take of an arc with this spread."""
+        arcs = joined(stacked([arc]), *self.sides)
+        far = np.concatenate([[0.0], *(part.far.ravel() for part in self)])
+        axes = np.array([part.far.shape[1] for part in self])
+        return (arcs.q, arcs.rate, arcs.log_inertia), far, axes
 
     @staticmethod
     def ways(moved: Sequence[tuple[Array, Array]]) -> Array:

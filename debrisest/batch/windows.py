@@ -4,11 +4,13 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from debrisest.arrays import BoolArray
+from debrisest import compiled
+from debrisest.arrays import Array, BoolArray
 from debrisest.batch.acceptance import Fit, tested
 from debrisest.batch.arc import Arc, along, course, moved
-from debrisest.batch.descent import NOTHING_ELSE, Descent, Prior, covariance, descend
+from debrisest.batch.descent import NOTHING_ELSE, Descent, Prior, covariance, descend, for_loops
 from debrisest.batch.evidence import Evidence
+from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.starts import Start
 
 _SURE_TURN = 0.35  # rad, sigma of the attitude up to which a window may grow at once
@@ -19,6 +21,7 @@ _LARGEST_NOISE = 3.0  # times what was said, above which it is no noise
 _WIDER = 1.2  # by how much chi2/dof may grow with more points
 _GATE = 25.0  # normalised square, three degrees of freedom: once in 60 000 points
 _ROUNDS = 4
+_ITERATIONS = 12
 _ENOUGH_EPOCHS = 150  # at least, of a window on the way
 _TAME, _WILD_SHARE = 0.8, 4.0  # share of a prediction's squares, and how many times it is wild
 _MEDIAN = 2.37  # of a chi-square of three
@@ -101,8 +104,11 @@ def _fitted(
     window: AnyEvidence, arc: Arc, held: Prior = NOTHING_ELSE
 ) -> tuple[Descent, AnyEvidence]:
     """Return the fit of a window, first with all points, then without outliers."""
+    if isinstance(window, KnownPoints) and compiled.available():
+        found, weight = _by_loops(window, arc, held)
+        return found, window.weighed(weight)
     kept = _without_wild(window, arc)
-    found = descend(kept, arc, 12, held)
+    found = descend(kept, arc, _ITERATIONS, held)
     for _ in range(_ROUNDS):
         q, rate = along(found.arc, window.times)
         squares = window.squares(q, rate)
@@ -111,8 +117,22 @@ def _fitted(
         if limit == _GATE and np.array_equal(gated.dof, kept.dof):
             break
         kept = gated
-        found = descend(kept, found.arc, 12, held)
+        found = descend(kept, found.arc, _ITERATIONS, held)
     return found, kept
+
+
+def _by_loops(window: KnownPoints, arc: Arc, held: Prior) -> tuple[Descent, Array]:
+    """Return the fit, and the weights of the points that are left, by compiled loops."""
+    from debrisest.batch.window_loops import fitted
+
+    gates = _GATE, _ROUNDS, _TAME, _WILD_SHARE, _MEDIAN * _UNUSUAL
+    q, rate, logs = (np.array(part) for part in arc[1:])
+    told = window.times - arc.epoch, *window.for_loops
+    prior = held.centre, held.information
+    chi2, settled, hold, weight = fitted(
+        *told, (q, rate, logs), prior, for_loops(), _ITERATIONS, gates
+    )
+    return Descent(Arc(arc.epoch, q, rate, logs), chi2, hold, settled), weight
 
 
 def _without_wild(window: AnyEvidence, arc: Arc) -> AnyEvidence:

@@ -8,28 +8,31 @@ from typing import Any
 
 import numpy as np
 
-from debrisest.arrays import Array, ComplexArray
+from debrisest.arrays import Array, ComplexArray, IntArray
+from debrisest.attitude.rotation_loops import Quaternion
 from debrisest.compiled import compiled
 from debrisest.dynamics.sine_loops import sines
 
 Body = tuple[Any, ...]
+_SMALLEST_TERM = 1e-16  # of the precession, of its mean rate
 _MOST = 24  # Landen transformations and steps of means, of which a handful is needed
 
 
 @compiled
 def body_of(rate0: Array, moments: Array) -> Body:
     """Return what the motion of ``rate0 (3)`` and ``moments (3)`` is made of, axes in order."""
-    order = np.argsort(moments)
-    if _gap(rate0, moments, order) < 0.0:
+    slopes, order = _slopes(moments), _ascending(moments)
+    rate, moment, slope = rate0[order], moments[order], slopes[order]
+    if _gap(rate, slope) < 0.0:
         order = order[::-1].copy()
-    rate, moment, slope = rate0[order], moments[order], _slopes(moments)[order]
+        rate, moment, slope = rate[::-1].copy(), moment[::-1].copy(), slope[::-1].copy()
     around = -slope[1] * slope[2] * rate[0] ** 2
     across = slope[0] * slope[2] * rate[1] ** 2
     shape = np.array([1e-150, 1.0, 1.0, 0.0])  # frequency, complement, dn^2, k^2 sn^2
     if not around <= 1e-290 * across:
         square = around + across
         shape[0] = math.sqrt(square)
-        shape[1] = max(_gap(rate0, moments, order) / square, 1e-290)
+        shape[1] = max(_gap(rate, slope) / square, 1e-290)
         shape[2], shape[3] = around / square, across / square
     quarter = _quarter_period(shape[1])
     moduli = _landen_moduli(shape[1])
@@ -62,9 +65,28 @@ def at(times: Array, body: Body, rate: Array, about: Array) -> None:
 
 
 @compiled
-def _gap(rate: Array, moments: Array, order: Any) -> float:
-    slope, square = _slopes(moments)[order], rate[order] ** 2
-    gap: float = slope[1] * slope[0] * square[2] - slope[1] * slope[2] * square[0]
+def at_epoch(body: Body) -> Quaternion:
+    """Attitude about the momentum at the epoch, in the order of the axes."""
+    motion, _, by_rate, side, hand, _ = body
+    rate = motion[0]
+    cosine = math.sqrt(0.5 + 0.5 * side * by_rate[0] * rate[0])
+    half = 0.5 * side * hand / cosine
+    return cosine, 0.0, half * by_rate[2] * rate[2], -half * by_rate[1] * rate[1]
+
+
+@compiled
+def _ascending(moments: Array) -> IntArray:
+    """The order (3) of three numbers."""
+    order = np.arange(3)
+    for i, j in ((0, 1), (1, 2), (0, 1)):
+        if moments[order[j]] < moments[order[i]]:
+            order[i], order[j] = order[j], order[i]
+    return order
+
+
+@compiled
+def _gap(rate: Array, slope: Array) -> float:
+    gap: float = slope[1] * slope[0] * rate[2] ** 2 - slope[1] * slope[2] * rate[0] ** 2
     return gap
 
 
@@ -131,20 +153,35 @@ def _harmonics(motion: Body, moment: Array, momentum: float, side: float) -> tup
     count = 14 * math.ceil(enough)
     rate, phase = np.empty((3, count)), np.arange(count) / count
     _rates(2.0 * quarter / shape[0] * phase, motion, rate)
-    circled = np.abs(rate[0])
-    speed = (np.sum(moment * rate0**2) + momentum * circled) / (momentum + moment[0] * circled)
-    cos, sin = np.cos(2.0 * math.pi * phase), np.sin(2.0 * math.pi * phase)
-    tails, total = np.empty(count // 2, dtype=np.complex128), 0.0j
-    for number in range(count // 2, 0, -1):
+    speed, cos, sin = np.empty(count), np.empty(count), np.empty(count)
+    sines(2.0 * math.pi * phase, sin, cos)
+    twice_energy, mean = np.sum(moment * rate0**2), 0.0
+    for k in range(count):
+        circled = abs(rate[0, k])
+        speed[k] = (twice_energy + momentum * circled) / (momentum + moment[0] * circled)
+        mean += speed[k] / count
+    tails = _terms(speed, cos, sin, _SMALLEST_TERM * mean)[::-1].copy()
+    for k in range(1, len(tails)):
+        tails[k] += tails[k - 1]
+    return mean, tails
+
+
+@compiled
+def _terms(speed: Array, cos: Array, sin: Array, least: float) -> ComplexArray:
+    """Terms of the integrated series, lowest first, until two in a row are below rounding."""
+    count, small, number = len(speed), 0, 0
+    terms = np.empty(count // 2, dtype=np.complex128)
+    while number < count // 2 and small < 2:
+        number += 1
         real, imaginary, place = 0.0, 0.0, 0
         for k in range(count):
             real += speed[k] * cos[place]
             imaginary -= speed[k] * sin[place]
             place += number
             place -= count if place >= count else 0
-        total += complex(real, imaginary) * 2.0 / (number * count)
-        tails[count // 2 - number] = total
-    return np.mean(speed), tails
+        terms[number - 1] = complex(real, imaginary) * 2.0 / (number * count)
+        small = small + 1 if abs(real) + abs(imaginary) < least * count else 0
+    return terms[:number]
 
 
 @compiled
