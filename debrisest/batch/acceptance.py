@@ -87,8 +87,8 @@ def _by_loops(evidence: KnownPoints, arc: Arc) -> tuple[float, Array, Array, flo
     """The same by compiled loops."""
     from debrisest.batch.window_loops import offsets
 
-    times, (points, weight) = evidence.times, evidence.for_loops
-    return offsets(times, times - arc.epoch, points, weight, arc[1:], _BLOCKS)
+    times = evidence.times
+    return offsets(times, times - arc.epoch, evidence.loop_sums, arc[1:], _BLOCKS)
 
 
 def _blocks(evidence: Evidence) -> tuple[IntArray, Array]:

@@ -87,6 +87,11 @@ def course(arc: Arc, times: Array) -> Course:
 
 def displaced(arc: Arc, error: Array) -> Arc:
     """Return the arc moved by errors (..., 11)."""
+    if compiled.available() and arc.q.ndim == 1:
+        from debrisest.batch import arc_loops
+
+        moved = arc_loops.displaced(*arc[1:], error.reshape(-1, UNKNOWNS))
+        return Arc(arc.epoch, *(part.reshape(*error.shape[:-1], part.shape[1]) for part in moved))
     q = quaternion.multiply(quaternion.exp(error[..., TURN]), arc.q)
     return Arc(arc.epoch, q, arc.rate + error[..., RATE], arc.log_inertia + error[..., INERTIA])
 

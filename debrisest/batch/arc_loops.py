@@ -34,6 +34,24 @@ def along(times: Array, q: Array, rate: Array, log_inertia: Array) -> tuple[Arra
 
 
 @compiled
+def displaced(q: Array, rate: Array, logs: Array, error: Array) -> Arcs:
+    """Return an arc moved by errors (arc, 11)."""
+    count = len(error)
+    q_moved, rates, ratios = np.empty((count, 4)), np.empty((count, 3)), np.empty((count, 5))
+    for n in range(count):
+        x, y, z = error[n, 0], error[n, 1], error[n, 2]
+        angle = math.sqrt(x * x + y * y + z * z)
+        half = 0.5 if angle == 0.0 else math.sin(0.5 * angle) / angle
+        turn = (math.cos(0.5 * angle), half * x, half * y, half * z)
+        q_moved[n] = multiplied(turn, (q[0], q[1], q[2], q[3]))
+        for i in range(3):
+            rates[n, i] = rate[i] + error[n, 3 + i]
+        for i in range(5):
+            ratios[n, i] = logs[i] + error[n, 6 + i]
+    return q_moved, rates, ratios
+
+
+@compiled
 def matrix_of(logs: Array) -> Array:
     """Log-ratios (5) as a matrix (3, 3)."""
     matrix = np.zeros((3, 3))

@@ -15,11 +15,11 @@ from itertools import combinations
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.batch.arc import INERTIA, Arc, displaced, stacked
+from debrisest.batch.arc import INERTIA, UNKNOWNS, Arc, displaced, stacked
 from debrisest.batch.descent import PRIOR_SIGMA, Descent, Prior, costs, descend_all
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.observability import inertia_directions
-from debrisest.batch.spread import FAR, Sides, Spread, principal_ways, shift
+from debrisest.batch.spread import FAR, Sides, Spread, principal_ways, shift, unbent
 
 _OTHERS = slice(0, 6)
 _NARROW = 0.01  # of the best direction's sigma
@@ -44,6 +44,8 @@ def spread_of(evidence: Evidence, found: Descent, covariance: Array) -> Spread:
     axes = np.concatenate([others, valley.ways])
     sides = Sides.straight(found.arc, axes)
     bent = valley.bent()
+    if not bent:
+        return unbent(found.arc, sides)
     for way, both in zip(bent, valley.followed(bent)):
         sides = sides.replaced(len(axes) - 5 + way, *both)
     ends = sides.chosen([len(axes) - 5 + way for way in bent])
@@ -55,12 +57,12 @@ class _Valley:
 
     def __init__(self, evidence: Evidence, found: Descent, covariance: Array) -> None:
         self.evidence, self.arc = evidence, found.arc
-        self.lowest = costs(evidence, [found.arc])[0]
+        self.lowest = costs(evidence, stacked([found.arc]))[0]
         self.sigma, self.directions = inertia_directions(covariance)
         per_sigma = self.directions / np.maximum(self.sigma, np.finfo(float).tiny)
         self.ways = (covariance[:, INERTIA] @ per_sigma).T
 
-    def rises(self, arcs: Sequence[Arc]) -> Array:
+    def rises(self, arcs: Arc) -> Array:
         """Return by how much arcs cost more than the best (arc,)."""
         return np.asarray(costs(self.evidence, arcs) - self.lowest)
 
@@ -70,7 +72,8 @@ class _Valley:
         Squares of their sigma are not far below the sigma of the best.
         """
         ways = np.flatnonzero(self.sigma**2 > _NARROW * self.sigma[0])
-        ends = [displaced(self.arc, sign * FAR * self.ways[k]) for k in ways for sign in (1, -1)]
+        both = np.array([[FAR], [-FAR]]) * self.ways[ways, None]
+        ends = displaced(self.arc, both.reshape(-1, UNKNOWNS))
         off = np.abs(self.rises(ends) / FAR**2 - 1.0).reshape(-1, 2)
         return [int(way) for way in ways[np.any(off > _STRAIGHT, axis=1)]]
 
@@ -89,7 +92,7 @@ class _Valley:
             if not going:
                 break
             ends = self.floors([scout.start() for scout in going], [scout.way for scout in going])
-            for scout, end, rise in zip(going, ends, self.rises(ends)):
+            for scout, end, rise in zip(going, ends, self.rises(stacked(ends))):
                 scout.judge(end, float(rise) / FAR**2)
         reached = [scout.reached() for scout in scouts]
         return list(zip(reached[::2], reached[1::2]))
@@ -114,7 +117,7 @@ class _Valley:
         errors = [np.sqrt(0.5) * (end[one] + other[two]) for end, other in zip(ends, others)]
         starts = [displaced(self.arc, error) for error in np.concatenate(errors)]
         found = self.floors(starts, [first for first, _ in pairs * 2])
-        far = np.sqrt(np.maximum(self.rises(found), FAR)).reshape(2, -1)
+        far = np.sqrt(np.maximum(self.rises(stacked(found)), FAR)).reshape(2, -1)
         return Sides(stacked(found[: len(pairs)]), stacked(found[len(pairs) :]), far)
 
 

@@ -23,6 +23,7 @@ from debrisest.batch.arc import (
     stacked,
 )
 from debrisest.batch.evidence import Evidence, Normal
+from debrisest.batch.point_sums import KnownPoints
 
 PRIOR_SIGMA = 0.8
 """Of each log-ratio of the inertia, about equal moments: a cube to a long rod."""
@@ -75,7 +76,7 @@ def descend_all(
     A descent ends where its next step would lower the chi-square by less than ``least_gain``.
     """
     held = held or [NOTHING_ELSE] * len(arcs)
-    if evidence.of_known_points is not None and compiled.available():
+    if isinstance(evidence, KnownPoints) and compiled.available():
         return _descended(evidence, stacked(arcs), held, iterations, least_gain)
     walks = _Walks(evidence, stacked(arcs), held)
     for _ in range(iterations):
@@ -85,18 +86,14 @@ def descend_all(
 
 
 def _descended(
-    evidence: Evidence, arcs: Arc, held: Sequence[Prior], iterations: int, least_gain: float
+    evidence: KnownPoints, arcs: Arc, held: Sequence[Prior], iterations: int, least_gain: float
 ) -> list[Descent]:
     """The same by compiled loops, on known points."""
     from debrisest.batch.descent_loops import descents
 
-    assert evidence.of_known_points is not None
-    product, hold, squares = evidence.of_known_points
-    told = evidence.times - arcs.epoch, product, hold, float(squares.sum())
-    settings = for_loops(least_gain)
-    centre, information = (np.stack(parts) for parts in zip(*held))
-    prior = centre, information
-    chi2, holds, settled = descents(told, arcs[1:], prior, iterations, settings)
+    told, settings = (evidence.times - arcs.epoch, evidence.loop_sums), for_loops(least_gain)
+    prior = np.stack([one.centre for one in held]), np.stack([one.information for one in held])
+    chi2, holds, settled = descents(*told, arcs[1:], prior, iterations, settings)
     return [
         Descent(chosen(arcs, k), float(chi2[k]), holds[k], bool(settled[k]))
         for k in range(len(chi2))
@@ -183,12 +180,17 @@ def covariance(hold: Array, fixed: int = 0) -> Array:
     return result
 
 
-def costs(evidence: Evidence, arcs: Sequence[Arc]) -> Array:
+def costs(evidence: Evidence, arcs: Arc) -> Array:
     """Return chi-squares (arc,) with the wide prior, infinite where no body is looked for."""
-    result = np.full(len(arcs), np.inf)
-    sought = [k for k, arc in enumerate(arcs) if _sought(arc)]
-    if sought:
-        part = stacked([arcs[k] for k in sought])
+    if isinstance(evidence, KnownPoints) and compiled.available():
+        from debrisest.batch import descent_loops
+
+        told = evidence.times - arcs.epoch, evidence.loop_sums
+        return descent_loops.costs(*told, arcs[1:], for_loops())
+    result = np.full(len(arcs.q), np.inf)
+    sought = np.flatnonzero(_sought(arcs))
+    if len(sought):
+        part = chosen(arcs, sought)
         with np.errstate(over="ignore", invalid="ignore"):
             chi2 = evidence.chi2(*along(part, evidence.times))
         result[sought] = chi2 + np.sum(part.log_inertia**2, axis=-1) / PRIOR_SIGMA**2

@@ -3,25 +3,28 @@
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
-from debrisest.attitude.rotation_loops import product
-from debrisest.batch.arc_loops import Arcs, matrix_of, motion
-from debrisest.batch.normal_loops import Work, normal, room
+from debrisest.batch.arc_loops import Arcs, displaced, matrix_of, motion
+from debrisest.batch.known_points_loops import Sums
+from debrisest.batch.normal_loops import Work, fit, normal, room
 from debrisest.compiled import compiled
 from debrisest.linear_algebra_loops import solve
 
-Told = tuple[Array, Array, Array, float]
-"""Times since the epoch, and sums of known points: two of each epoch (time, 3, 3), and squares."""
 Settings = tuple[float, float, float, float, float, float]
 """Least gain, sigma of the wide prior, widest log-ratios, least damping, most, turn of a step."""
 Epochs = tuple[Array, Array, Array, float, float]
-"""Times since the epoch, the two sums as (9, time) and (6, time), squares, and the longest time."""
+"""Times since the epoch, two sums of known points, all squares, and the longest time."""
 Room = tuple[Array, Array, Work]
 """For attitudes (9, 4, time) and rates (3, time) of an arc and eight beside it, and for a block."""
 
 
 @compiled
 def descents(
-    told: Told, arcs: Arcs, held: tuple[Array, Array], iterations: int, settings: Settings
+    times: Array,
+    sums: Sums,
+    arcs: Arcs,
+    held: tuple[Array, Array],
+    iterations: int,
+    settings: Settings,
 ) -> tuple[Array, Array, BoolArray]:
     """Move the ``arcs (arc, ...)`` to where they fit best.
 
@@ -29,8 +32,7 @@ def descents(
     the priors, of which ``held`` are centre (arc, 5) and information (arc, 5, 5), and which arcs
     have settled.
     """
-    count, times, epochs = len(arcs[0]), len(told[0]), _by_number(told)
-    place = room_of(times)
+    count, epochs, place = len(arcs[0]), epochs_of(times, sums), room_of(len(times))
     chi2, holds = np.empty(count), np.empty((count, 11, 11))
     settled = np.zeros(count, dtype=np.bool_)
     for n in range(count):
@@ -46,19 +48,27 @@ def room_of(times: int) -> Room:
 
 
 @compiled
-def _by_number(told: Told) -> Epochs:
-    """Return what the epochs say with the epochs last."""
-    times, product_, hold, squares = told
-    one, other, longest = np.empty((9, len(times))), np.empty((6, len(times))), 0.0
-    for t in range(len(times)):
-        longest, k = max(longest, abs(times[t])), 0
-        for i in range(3):
-            for j in range(3):
-                one[3 * i + j, t] = product_[t, i, j]
-                if j >= i:
-                    other[k, t] = hold[t, i, j]
-                    k += 1
-    return times, one, other, squares, longest
+def epochs_of(times: Array, sums: Sums) -> Epochs:
+    """Return what a descent takes of sums of points; times count from the arc's epoch."""
+    longest = 0.0
+    for time in times:
+        longest = max(longest, abs(time))
+    return times, sums[0], sums[1], np.sum(sums[2]), longest
+
+
+@compiled
+def costs(times: Array, sums: Sums, arcs: Arcs, settings: Settings) -> Array:
+    """Return chi-squares (arc,) with the wide prior, infinite where no body is looked for."""
+    _, wide, widest, _, _, _ = settings
+    result, squares = np.full(len(arcs[0]), np.inf), np.sum(sums[2])
+    q, rates = np.empty((4, len(times))), np.empty((3, len(times)))
+    for n in range(len(result)):
+        far2 = np.sum(arcs[2][n] ** 2)
+        if np.sqrt(far2) < widest:
+            motion(times, arcs[0][n], arcs[1][n], matrix_of(arcs[2][n]), q, rates)
+            cost = squares - 2.0 * fit(q, sums[0]) + far2 / wide**2
+            result[n] = cost if np.isfinite(cost) else np.inf
+    return result
 
 
 @compiled
@@ -73,13 +83,18 @@ def descent(
 ) -> tuple[float, bool]:
     """Move one arc, and write its information; return chi-square, and whether it has settled."""
     least_gain, _, _, least, most, _ = settings
-    step, damping, scratch = np.empty(11), 1e-6, (np.empty((11, 11)), np.empty(11), np.empty(11))
+    step, damping, scratch = (
+        np.empty((1, 11)),
+        1e-6,
+        (np.empty((11, 11)), np.empty(11), np.empty(11)),
+    )
     pull, new_pull, new_hold = np.empty(11), np.empty(11), np.empty((11, 11))
     chi2, lowest = _at(epochs, arc, held, settings, place, pull, hold)
     for _ in range(iterations):
-        if _stepped(pull, hold, damping, step, scratch) < least_gain:
+        if _stepped(pull, hold, damping, step[0], scratch) < least_gain:
             return chi2, True
-        moved = _displaced(arc, step)
+        ahead = displaced(arc[0], arc[1], arc[2], step)
+        moved = ahead[0][0], ahead[1][0], ahead[2][0]
         new, total = _at(epochs, moved, held, settings, place, new_pull, new_hold)
         if total < lowest:
             chi2, lowest, pull[:], hold[:] = new, total, new_pull, new_hold
@@ -132,16 +147,6 @@ def _at(
         hold[6 + i, 6 + i] += wide**-2.0
         total += logs[i] ** 2 / wide**2 + (logs[i] - held[0][i]) * pulled
     return chi2, total if np.isfinite(total) else np.inf
-
-
-@compiled
-def _displaced(arc: Arcs, error: Array) -> Arcs:
-    """The arc moved by an error (11)."""
-    angle = np.sqrt(np.sum(error[:3] ** 2))
-    turn = np.empty(4)
-    turn[0] = np.cos(0.5 * angle)
-    turn[1:] = (0.5 if angle == 0.0 else np.sin(0.5 * angle) / angle) * error[:3]
-    return product(turn, arc[0]), arc[1] + error[3:6], arc[2] + error[6:]
 
 
 @compiled

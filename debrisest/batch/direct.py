@@ -22,7 +22,6 @@ class Direct(ABC):
     """(time, 3, 3), zero where nothing counts."""
     of_rate: ClassVar[bool]
     unknowns_fixed: ClassVar[int]
-    of_known_points: ClassVar[None] = None
 
     @abstractmethod
     def errors(self, q: Array, rate: Array, epochs: Epochs) -> Array:

@@ -47,11 +47,21 @@ def estimate_from_points(
     ``near`` an arc close to the motion, such as that of fewer epochs, which saves the search;
     ``at`` the times, s, at which the motion is told, where these are not ``times``.
     """
-    plain = tracks(times, points, 1.0)
-    found = pairs(plain, model)
     given = None if sigma is None else tracks(times, points, sigma)
+    return estimate_from_tracks(tracks(times, points, 1.0), given, model, near, at)
+
+
+def estimate_from_tracks(
+    plain: Tracks,
+    given: Tracks | None,
+    model: Array | None = None,
+    near: Arc | None = None,
+    at: Array | None = None,
+) -> Motion:
+    """Return the same of tracks with unit weights and with those of their noise, if it is given."""
+    times, found = plain.times, pairs(plain, model)
     typical = noise_of(found) if given is None else _typical(given)
-    if sigma is None:
+    if given is None:
         typical = np.nanmax(
             [typical, _LEAST_NOISE * np.nanmax(np.abs(plain.centred()), initial=0.0)]
         )
@@ -60,22 +70,22 @@ def estimate_from_points(
     scale = float(np.nanmax([typical, noise_of(found)]))
     kept = (largest_rigid_set if model is None else on_known_body)(found, scale)
     other = other_body(found, scale, kept)
-    tracked = (given or tracks(times, points, typical)).without(~kept)
+    tracked = (given or plain.scaled(typical)).without(~kept)
     tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
-    unit = typical if sigma is None else 1.0
+    unit = typical if given is None else 1.0
     whole, tracked = tracked, tracked.without(odd_points(tracked, found, scale))
     tracked = tracked.within(tracked.seen.sum(axis=1) >= 2)
     at = times if at is None else at
     if model is not None:
         solution = _model_in_doubt(
-            solve(KnownPoints(tracked, model), at, sigma is not None, near=near), plain
+            solve(KnownPoints(tracked, model), at, given is not None, near=near), plain
         )
         return _with_points(solution, plain, whole, other, unit)
     cloud = align_clouds(tracked)
     all_points = FreePoints(tracked, cloud.model)
     joined = cloud.tracks.seen.any(axis=0)
     wider = None if np.array_equal(joined, tracked.seen.any(axis=0)) else all_points
-    solution = solve(cloud, at, sigma is not None, wider)
+    solution = solve(cloud, at, given is not None, wider)
     return _with_points(solution, plain, whole, other, unit)
 
 

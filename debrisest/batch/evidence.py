@@ -66,10 +66,6 @@ class Evidence(Protocol):
     def unknowns_fixed(self) -> int:
         """Leading unknowns that only name the frame: 3 where the points are unknown too."""
 
-    @property
-    def of_known_points(self) -> tuple[Array, Array, Array] | None:
-        """Sums of epochs that are all there is to tell, as `point_sums.KnownPoints.sums`."""
-
     def told(self, q: Array, rate: Array, epochs: Epochs = slice(None)) -> Told:
         """Return what the epochs say at attitudes (..., 4) and rates (..., 3)."""
 

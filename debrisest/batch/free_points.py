@@ -28,7 +28,6 @@ class FreePoints:
     """Places (feature, 3), m, as far as they are known; the mean of a connected set is zero."""
     of_rate = False
     unknowns_fixed = 3
-    of_known_points = None
 
     @cached_property
     def known(self) -> KnownPoints:

@@ -12,6 +12,9 @@ from debrisest.compiled import compiled
 Points = tuple[Array, Array, Array]
 """Measured (time, feature, 3), their places in the body (feature, 3), and how even their noise is
 (time, feature)."""
+Sums = tuple[Array, Array, Array, Array]
+"""``B`` (9, time), ``tr(F) I - F`` (6, time), its upper triangle row by row, squares and degrees of
+freedom (time,)."""
 _LEAST_SHARE = 0.3
 _FEWEST_KEPT = 0.5
 _MOST_OF_AN_EPOCH = 4
@@ -110,8 +113,8 @@ def _squared(points: Points, weight: Array, q: Array, t: int, left: Array, resul
 
 
 @compiled
-def sums(points: Points, weight: Array) -> tuple[Array, Array, Array, Array]:
-    """Return ``B`` (9, time), the six of ``tr(F) I - F`` (6, time), squares and dof (time,)."""
+def sums(points: Points, weight: Array) -> Sums:
+    """Return what there is to know of points."""
     times, features = weight.shape
     product, hold = np.zeros((9, times)), np.zeros((6, times))
     squared, dof = np.zeros(times), np.empty(times)

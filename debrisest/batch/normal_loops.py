@@ -50,6 +50,17 @@ def normal(
 
 
 @compiled_sum
+def fit(q: Array, product: Array) -> float:
+    """Return the sum of ``tr(R^T B)`` over attitudes (4, time), ``product (9, time)``."""
+    total = 0.0
+    for t in range(q.shape[1]):
+        r, s, u = rows_of(at(q, t))
+        x, y, z = _three(product, 0, t), _three(product, 3, t), _three(product, 6, t)
+        total += inner(x, r) + inner(y, s) + inner(z, u)
+    return total
+
+
+@compiled_sum
 def _product(one: Array, other: Array) -> float:
     total = 0.0
     for k in range(len(one)):

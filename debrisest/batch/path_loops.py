@@ -29,25 +29,28 @@ def path(times: Array, arcs: Arcs, far: Array, parts: IntArray) -> tuple[Array, 
     q, rate, error = np.empty((4, count)), np.empty((3, count)), np.empty((6, count))
     q_side, rate_side = np.empty((4, count)), np.empty((3, count))
     motion(times, arcs[0][0], arcs[1][0], matrix_of(arcs[2][0]), q, rate)
-    first_pair, first_end = 2 * parts[0], 2 * parts[0] + parts[1]
-    ways = np.zeros((first_end + parts[3], 6, count)), np.zeros((first_end + parts[3], 5))
+    axes, pairs = 2 * parts[0], parts[1]
+    count_of_ways = 4 * ((axes + pairs + parts[3] + 3) // 4)
+    ways = np.zeros((count_of_ways, 6, count)), np.zeros((count_of_ways, 5))
     arc = 0
     for part in range(5):
         for k in range(2 * parts[part]):
             arc += 1
-            axis, sign = (k, 1.0) if k < parts[part] else (k - parts[part], -1.0)
-            half = 0.5 / far[arc]
+            ahead = k < parts[part]
+            axis, weight = k if ahead else k - parts[part], 0.5 / far[arc]
             motion(times, arcs[0][arc], arcs[1][arc], matrix_of(arcs[2][arc]), q_side, rate_side)
             _turns(q, q_side, error)
-            error[3:] = rate_side - rate
-            logs = arcs[2][arc] - arcs[2][0]
             if part == 0:
-                _add(ways, axis, sign * half, error, logs)
-                _add(ways, parts[0] + axis, half, error, logs)
+                axis, weight = k, math.sqrt(0.5) / far[arc]
             elif part < 3:
-                _add(ways, first_pair + axis, half * (1.5 - part), error, logs)
+                axis, weight = axes + axis, weight * (1.5 - part)
             else:
-                _add(ways, first_end + axis, sign * half * (7.0 - 2.0 * part), error, logs)
+                axis, weight = (
+                    axes + pairs + axis,
+                    weight * (7.0 - 2.0 * part) * (1 if ahead else -1),
+                )
+            _add(ways[0][axis], weight, error, rate_side, rate)
+            ways[1][axis] += weight * (arcs[2][arc] - arcs[2][0])
     return q.T.copy(), rate.T.copy(), _joint(ways[0], ways[1])
 
 
@@ -80,33 +83,55 @@ def _turns(q: Array, other: Array, error: Array) -> None:
 
 
 @compiled
-def _add(ways: tuple[Array, Array], way: int, weight: float, error: Array, logs: Array) -> None:
-    for i in range(6):
-        for t in range(error.shape[1]):
-            ways[0][way, i, t] += weight * error[i, t]
-    for i in range(5):
-        ways[1][way, i] += weight * logs[i]
+def _add(way: Array, weight: float, turn: Array, rate: Array, middle: Array) -> None:
+    for i in range(3):
+        for t in range(way.shape[1]):
+            way[i, t] += weight * turn[i, t]
+        for t in range(way.shape[1]):
+            way[3 + i, t] += weight * (rate[i, t] - middle[i, t])
 
 
 @compiled
 def _joint(ways: Array, constant: Array) -> Array:
     """Sum (time, 11, 11) of the squares of all ways, of which five numbers are constant."""
     count = ways.shape[2]
-    joint, total = np.empty((count, 11, 11)), np.empty(_BLOCK)
+    joint, sums, same = np.empty((count, 11, 11)), np.zeros((11, 11, _BLOCK)), constant.T @ constant
+    part = np.zeros((len(ways), 6, _BLOCK))
     for first in range(0, count, _BLOCK):
-        last = min(first + _BLOCK, count)
+        size = min(_BLOCK, count - first)
+        for way in range(len(ways)):
+            for i in range(6):
+                for t in range(size):
+                    part[way, i, t] = ways[way, i, first + t]
         for a in range(11):
             for b in range(a + 1):
-                total[:] = 0.0
-                for way in range(len(ways)):
+                total = sums[a, b]
+                total[:] = same[a - 6, b - 6] if b > 5 else 0.0
+                for way in range(0, len(ways) if b < 6 else 0, 4):
                     if a < 6:
-                        for t in range(first, last):
-                            total[t - first] += ways[way, a, t] * ways[way, b, t]
-                    elif b < 6:
-                        for t in range(first, last):
-                            total[t - first] += constant[way, a - 6] * ways[way, b, t]
+                        _squares(part, way, a, b, total)
                     else:
-                        total += constant[way, a - 6] * constant[way, b - 6]
-                for t in range(first, last):
-                    joint[t, a, b] = joint[t, b, a] = total[t - first]
+                        _shares(constant, part, way, a - 6, b, total)
+        for t in range(size):
+            for a in range(11):
+                for b in range(a + 1):
+                    joint[first + t, a, b] = joint[first + t, b, a] = sums[a, b, t]
     return joint
+
+
+@compiled
+def _squares(part: Array, way: int, i: int, j: int, total: Array) -> None:
+    """Add the products of four ways."""
+    a, b, c, d = part[way, i], part[way + 1, i], part[way + 2, i], part[way + 3, i]
+    e, f, g, h = part[way, j], part[way + 1, j], part[way + 2, j], part[way + 3, j]
+    for t in range(_BLOCK):
+        total[t] += a[t] * e[t] + b[t] * f[t] + c[t] * g[t] + d[t] * h[t]
+
+
+@compiled
+def _shares(constant: Array, part: Array, way: int, i: int, j: int, total: Array) -> None:
+    """The same where one does not depend on time."""
+    a, b, c, d = constant[way, i], constant[way + 1, i], constant[way + 2, i], constant[way + 3, i]
+    e, f, g, h = part[way, j], part[way + 1, j], part[way + 2, j], part[way + 3, j]
+    for t in range(_BLOCK):
+        total[t] += a * e[t] + b * f[t] + c * g[t] + d * h[t]

@@ -66,10 +66,12 @@ class KnownPoints:
         points = tracked.points, np.ascontiguousarray(self.model), tracked.even
         return points, np.ascontiguousarray(tracked.weight)
 
-    @property
-    def of_known_points(self) -> tuple[Array, Array, Array]:
-        """The sums."""
-        return self.sums
+    @cached_property
+    def loop_sums(self) -> tuple[Array, Array, Array, Array]:
+        """The sums as loops take them (`known_points_loops.Sums`), and by them."""
+        from debrisest.batch import known_points_loops
+
+        return known_points_loops.sums(*self.for_loops)
 
     def told(self, q: Array, rate: Array, epochs: Epochs = slice(None)) -> Told:
         """Return what the epochs say at attitudes (..., 4); rates do not matter."""

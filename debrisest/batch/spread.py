@@ -96,8 +96,14 @@ class Spread(NamedTuple):
 
 def straight(arc: Arc, covariance: Array) -> Spread:
     """Return the spread of a ``covariance (11, 11)`` that bends nowhere."""
-    none = Sides.straight(arc, np.zeros((0, 11)))
-    return Spread(Sides.straight(arc, principal_ways(covariance)), none, none, none, none)
+    return unbent(arc, Sides.straight(arc, principal_ways(covariance)))
+
+
+def unbent(arc: Arc, axes: Sides) -> Spread:
+    """Return the spread of axes of which none bends."""
+    no_arc = Arc(arc.epoch, *(np.zeros((0, len(part))) for part in arc[1:]))
+    none = Sides(no_arc, no_arc, np.zeros((2, 0)))
+    return Spread(axes, none, none, none, none)
 
 
 def principal_ways(covariance: Array) -> Array:

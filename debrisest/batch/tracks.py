@@ -35,7 +35,7 @@ class Tracks(NamedTuple):
         """Points less the mean of their epoch (time, feature, 3)."""
         return np.asarray(self.points - self.mean(self.points))
 
-    def within(self, epochs: BoolArray) -> "Tracks":
+    def within(self, epochs: BoolArray | slice) -> "Tracks":
         """Return some epochs."""
         return Tracks(*(part[epochs] for part in self))
 

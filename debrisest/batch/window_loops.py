@@ -8,8 +8,8 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.attitude.rotation_loops import Vector, rows_of
 from debrisest.batch.arc_loops import Arcs, diagonalised, matrix_of, motion
-from debrisest.batch.descent_loops import Settings, descent, room_of
-from debrisest.batch.known_points_loops import Points, gated, squares, sums
+from debrisest.batch.descent_loops import Settings, descent, epochs_of, room_of
+from debrisest.batch.known_points_loops import Points, Sums, gated, squares, sums
 from debrisest.batch.normal_loops import at, said
 from debrisest.compiled import compiled
 
@@ -44,12 +44,10 @@ def fitted(
         squares(points, weight, q, square)
         limit = _limit(square, gates, turn == 0)
         trial = gated(points, weight, q, square, limit)
-        product, spread, squared, counted = sums(points, trial)
-        if turn > 0 and limit == gate and np.array_equal(counted, dof):
+        told = sums(points, trial)
+        if turn > 0 and limit == gate and np.array_equal(told[3], dof):
             break
-        kept, dof = trial, counted
-        longest = np.max(np.abs(times)) if len(times) else 0.0
-        epochs = times, product, spread, np.sum(squared), longest
+        kept, dof, epochs = trial, told[3], epochs_of(times, told)
         chi2, settled = descent(epochs, arc, held, iterations, settings, place, hold)
     return chi2, settled, hold, kept
 
@@ -70,14 +68,14 @@ def _limit(square: Array, gates: Gates, first: bool) -> float:
 
 @compiled
 def offsets(
-    clock: Array, times: Array, points: Points, weight: Array, arc: Arcs, most: int
+    clock: Array, times: Array, sums: Sums, arc: Arcs, most: int
 ) -> tuple[float, Array, Array, float]:
     """Return chi-square, that of the blocks' mean offsets (2, block), limits, s, and all dof.
 
     Offsets in inertial axes, then in those of the body; at most so many blocks. ``times`` count
     from the arc's epoch.
     """
-    product, hold, squared, dof = sums(points, weight)
+    product, hold, squared, dof = sums
     q, rates = np.empty((4, len(times))), np.empty((3, len(times)))
     motion(times, arc[0], arc[1], matrix_of(arc[2]), q, rates)
     count, whole = min(most, max(len(times) // 3, 1)), max(np.sum(dof), 1.0)

@@ -17,11 +17,12 @@ from debrisest.attitude import quaternion
 from debrisest.batch.arc import Arc
 from debrisest.batch.estimate import (
     estimate_from_attitudes,
-    estimate_from_points,
     estimate_from_rates,
+    estimate_from_tracks,
 )
 from debrisest.batch.motion import Motion
-from debrisest.batch.motion_model import MotionModel
+from debrisest.batch.motion_model import Estimate, MotionModel
+from debrisest.batch.tracks import tracks
 from debrisest.clock import Clock
 from debrisest.filters.estimates import Estimates
 from debrisest.problems.tumbling import points_motion as body
@@ -30,6 +31,7 @@ from debrisest.problems.tumbling.gauge import in_true_frame
 from debrisest.problems.tumbling.right_or_wrong import right_or_wrong
 from debrisest.roles import Window
 
+_NO_NOISE = "points without noise weigh infinitely: their noise must be positive"
 _NEEDS = {"points": "measured_point", "attitudes": "measured_q_if", "rates": "measured_rate_f"}
 
 
@@ -66,16 +68,16 @@ class TumblingMotion(InFeatureFrame):
 
     def model(self, data: Data, clock: Clock) -> MotionModel:
         """Return what gives the motion of a run."""
-        estimators: dict[str, Callable[..., Motion]] = {
-            "points": partial(_from_points, self.geometry == "known"),
-            "attitudes": _from_attitudes,
-            "rates": _from_rates,
+        estimators: dict[str, Callable[[Data, Array, int], Estimate]] = {
+            "points": partial(_of_points, self.geometry == "known"),
+            "attitudes": partial(partial, _from_attitudes),
+            "rates": partial(partial, _from_rates),
         }
         estimate = estimators[self.measured]
         return MotionModel(
             times=clock.times,
             runs=len(data["run"]),
-            estimate=lambda run: partial(estimate, data, clock.times, run),
+            estimate=partial(estimate, data, clock.times),
             error_names=body.ERROR_NAMES,
             frame_is_given=not self._frame_is_free,
         )
@@ -111,18 +113,26 @@ class TumblingMotion(InFeatureFrame):
         return self.measured == "points" and self.geometry == "unknown"
 
 
-def _from_points(
-    known: bool, data: Data, times: Array, run: int, count: int, near: Arc | None, at: Array | None
-) -> Motion:
-    points = data["measured_point"][run, :count]
-    sigma = data["point_sigma"][run, :count] if "point_sigma" in data else None
+def _of_points(known: bool, data: Data, times: Array, run: int) -> Estimate:
+    """Return what estimates from the points so far; what these are is looked at once."""
+    points, model = data["measured_point"][run], data["known_point_f"][run] if known else None
+    sigma = data["point_sigma"][run] if "point_sigma" in data else None
     if sigma is None and "point_noise" in data:
         sigma = np.full(points.shape, data["point_noise"][run])
-    given = None if sigma is None or np.isnan(sigma).all() else sigma
-    if given is not None and not np.nanmax(given) > 0.0:
-        raise ValueError("points without noise weigh infinitely: their noise must be positive")
-    model = data["known_point_f"][run] if known else None
-    return estimate_from_points(times[:count], points, given, model, near, at)
+    plain = tracks(times, points, 1.0)
+    weighed = None if sigma is None else tracks(times, points, sigma)
+
+    def estimate(count: int, near: Arc | None, at: Array | None) -> Motion:
+        so_far, given = slice(count), None
+        if sigma is not None and weighed is not None and not np.isnan(sigma[so_far]).all():
+            given = weighed.within(so_far)
+            if not np.nanmax(sigma[so_far]) > 0.0:
+                raise ValueError(
+                    "points without noise weigh infinitely: their noise must be positive"
+                )
+        return estimate_from_tracks(plain.within(so_far), given, model, near, at)
+
+    return estimate
 
 
 def _from_attitudes(
