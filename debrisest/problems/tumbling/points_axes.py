@@ -6,7 +6,7 @@ deviations are huge.
 
 import numpy as np
 
-from debrisest.arrays import Array, Data
+from debrisest.arrays import Array, Data, IntArray
 from debrisest.assessment.principal_axes import best_relabeling
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
@@ -25,20 +25,30 @@ def in_principal_axes(state: Array) -> Data:
 
     The axes of a run keep their labels: they are those nearest to the axes of its last epoch.
     """
-    logs, axes = principal_logs(state[..., body.LOG_INERTIA])
-    last = np.broadcast_to(axes[:, -1:], axes.shape)
-    labels = best_relabeling(axes.reshape(-1, 3, 3), last.reshape(-1, 3, 3)).reshape(axes.shape)
+    inertia = state[..., body.LOG_INERTIA]
+    rows, which = _distinct(inertia)
+    logs, axes = principal_logs(inertia.reshape(-1, 5)[rows])
+    last = axes[which[rows // state.shape[1], -1]]
+    labels = best_relabeling(axes, last)
     axes = axes @ np.swapaxes(labels, -1, -2)
     logs = (np.abs(labels) @ logs[..., None])[..., 0]
     q_fb = quaternion.from_matrix(axes)
     moments = np.exp(logs)
     q_fb = np.where(np.isnan(logs[..., :1]), np.nan, q_fb)
+    turn = quaternion.to_matrix(q_fb)
     return {
-        "q_ib": quaternion.multiply(state[..., body.Q], q_fb),
-        "q_bf": quaternion.conjugate(q_fb),
-        "rate_b": (state[..., None, body.RATE] @ quaternion.to_matrix(q_fb))[..., 0, :],
-        "moments_b": moments / np.linalg.norm(moments, axis=-1, keepdims=True),
+        "q_ib": quaternion.multiply(state[..., body.Q], q_fb[which]),
+        "q_bf": quaternion.conjugate(q_fb)[which],
+        "rate_b": (state[..., None, body.RATE] @ turn[which])[..., 0, :],
+        "moments_b": (moments / np.linalg.norm(moments, axis=-1, keepdims=True))[which],
     }
+
+
+def _distinct(values: Array) -> tuple[IntArray, IntArray]:
+    """Return rows of values (..., time, n) that are not as before, and which of them each is."""
+    new = np.ones(values.shape[:-1], dtype=np.bool_)
+    new[..., 1:] = np.any(values[..., 1:, :] != values[..., :-1, :], axis=-1)
+    return np.flatnonzero(new), (np.cumsum(new) - 1).reshape(new.shape)
 
 
 def axes_by_inertia(data: Data) -> tuple[Array, Array]:
@@ -46,13 +56,16 @@ def axes_by_inertia(data: Data) -> tuple[Array, Array]:
 
     Both are derivatives by the five coordinates of the inertia.
     """
-    axes = np.swapaxes(quaternion.to_matrix(data["q_bf"]), -1, -2)[..., None, :, :]
+    rows, which = _distinct(np.concatenate([data["q_bf"], data["moments_b"]], axis=-1))
+    q_bf = data["q_bf"].reshape(-1, 4)[rows]
+    axes = np.swapaxes(quaternion.to_matrix(q_bf), -1, -2)[..., None, :, :]
     turned = np.swapaxes(axes, -1, -2) @ log_tensor(np.eye(5)) @ axes
-    logs = np.log(data["moments_b"])
+    logs = np.log(data["moments_b"].reshape(-1, 3)[rows])
     gaps = [logs[..., j] - logs[..., i] for i, j in _SIDES]
     apart = [np.copysign(np.maximum(np.abs(gap), _LEAST_GAP), gap)[..., None] for gap in gaps]
     turn = [turned[..., i, j] / gap for (i, j), gap in zip(_SIDES, apart)]
-    return np.stack(turn, axis=-2), np.swapaxes(np.diagonal(turned, 0, -2, -1), -1, -2)
+    moved = np.swapaxes(np.diagonal(turned, 0, -2, -1), -1, -2)
+    return np.stack(turn, axis=-2)[which], moved[which]
 
 
 def rate_by_errors(data: Data) -> Array:
