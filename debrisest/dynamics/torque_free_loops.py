@@ -14,7 +14,7 @@ from debrisest.compiled import compiled
 from debrisest.dynamics.sine_loops import sines
 
 Body = tuple[Any, ...]
-_SMALLEST_TERM = 1e-16  # of the precession, of its mean rate
+_SMALLEST_TERM = 1e-15  # of the precession, of its mean rate
 _MOST = 24  # Landen transformations and steps of means, of which a handful is needed
 
 
@@ -168,20 +168,26 @@ def _harmonics(motion: Body, moment: Array, momentum: float, side: float) -> tup
 
 @compiled
 def _terms(speed: Array, cos: Array, sin: Array, least: float) -> ComplexArray:
-    """Terms of the integrated series, lowest first, until two in a row are below rounding."""
-    count, small, number = len(speed), 0, 0
-    terms = np.empty(count // 2, dtype=np.complex128)
-    while number < count // 2 and small < 2:
-        number += 1
-        real, imaginary, place = 0.0, 0.0, 0
-        for k in range(count):
-            real += speed[k] * cos[place]
-            imaginary -= speed[k] * sin[place]
-            place += number
-            place -= count if place >= count else 0
-        terms[number - 1] = complex(real, imaginary) * 2.0 / (number * count)
-        small = small + 1 if abs(real) + abs(imaginary) < least * count else 0
-    return terms[:number]
+    """Terms of the integrated series, lowest first, down to those that are below rounding.
+
+    Sine and cosine of all harmonics go from sample to sample together.
+    """
+    count = len(speed)
+    room = 8 * ((count // 2 + 7) // 8)
+    c, s, real, imaginary = np.ones(room), np.zeros(room), np.zeros(room), np.zeros(room)
+    for k in range(count):
+        for n in range(room):
+            real[n] += speed[k] * c[n]
+            imaginary[n] -= speed[k] * s[n]
+            ahead = c[n] * cos[n + 1] - s[n] * sin[n + 1]
+            c[n], s[n] = ahead, s[n] * cos[n + 1] + c[n] * sin[n + 1]
+    last = count // 2
+    while last > 1 and abs(real[last - 1]) + abs(imaginary[last - 1]) < least * count:
+        last -= 1
+    terms = np.empty(last, dtype=np.complex128)
+    for n in range(last):
+        terms[n] = complex(real[n], imaginary[n]) * 2.0 / ((n + 1) * count)
+    return terms
 
 
 @compiled
