@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.attitude.rotation_loops import Quaternion, multiplied, rows_of
+from debrisest.attitude.rotation_loops import Quaternion, multiplied, rows_of, turned_by
 from debrisest.compiled import compiled
 from debrisest.dynamics.log_inertia import BASIS
 from debrisest.dynamics.torque_free_loops import at, at_epoch, body_of
@@ -39,10 +39,7 @@ def displaced(q: Array, rate: Array, logs: Array, error: Array) -> Arcs:
     count = len(error)
     q_moved, rates, ratios = np.empty((count, 4)), np.empty((count, 3)), np.empty((count, 5))
     for n in range(count):
-        x, y, z = error[n, 0], error[n, 1], error[n, 2]
-        angle = math.sqrt(x * x + y * y + z * z)
-        half = 0.5 if angle == 0.0 else math.sin(0.5 * angle) / angle
-        turn = (math.cos(0.5 * angle), half * x, half * y, half * z)
+        turn = turned_by((error[n, 0], error[n, 1], error[n, 2]))
         q_moved[n] = multiplied(turn, (q[0], q[1], q[2], q[3]))
         for i in range(3):
             rates[n, i] = rate[i] + error[n, 3 + i]

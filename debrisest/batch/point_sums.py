@@ -112,6 +112,10 @@ class KnownPoints:
 
     def seen(self) -> Seen:
         """Return the least-squares attitudes (Wahba) of epochs that tell all three directions."""
+        return self._seen
+
+    @cached_property
+    def _seen(self) -> Seen:
         product, hold, _ = self.sums
         q = quaternion.nearest(product)
         attitude = quaternion.to_matrix(q)

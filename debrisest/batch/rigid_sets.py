@@ -86,8 +86,11 @@ def noise_of(found: Pairs) -> float:
     shown = found.noise[np.isfinite(found.noise)]
     if not len(shown):
         return np.nan
-    rigid = np.quantile(shown, _RIGID_SHARE)
-    return float(np.median(shown[shown <= _LOOSE * rigid]))
+    ordered, place = np.sort(shown), _RIGID_SHARE * (len(shown) - 1)
+    below, above = ordered[int(place)], ordered[min(int(place) + 1, len(ordered) - 1)]
+    rigid = below + (above - below) * (place - int(place))
+    count = int(np.searchsorted(ordered, _LOOSE * rigid, side="right"))
+    return float(0.5 * (ordered[(count - 1) // 2] + ordered[count // 2]))
 
 
 def largest_rigid_set(found: Pairs, sigma: float) -> BoolArray:
@@ -118,7 +121,8 @@ def on_known_body(found: Pairs, sigma: float) -> BoolArray:
     kept = largest_rigid_set(found, sigma)
     while True:
         compared = np.isfinite(found.noise[kept]).any(axis=0)
-        more = _among(found, sigma, ~kept & ~compared)
+        others = ~kept & ~compared
+        more = _among(found, sigma, others) if others.any() else others
         if more.sum() < 2:
             return kept
         kept = kept | more
@@ -126,7 +130,9 @@ def on_known_body(found: Pairs, sigma: float) -> BoolArray:
 
 def other_body(found: Pairs, sigma: float, body: BoolArray) -> BoolArray:
     """Return which points (feature,) that are not of a body keep their distances: three or more."""
-    members = _among(found, sigma, ~body)
+    members = ~body
+    if members.sum() >= _FEWEST_OF_A_BODY:
+        members = _among(found, sigma, members)
     return members if members.sum() >= _FEWEST_OF_A_BODY else np.zeros_like(members)
 
 

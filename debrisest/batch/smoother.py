@@ -13,11 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import quaternion
 from debrisest.batch.evidence import Evidence
 from debrisest.batch.local_rates import Local
 from debrisest.batch.path import Path, unknown_path
+from debrisest.batch.point_sums import KnownPoints
 
 _UPDATES = 2  # of an epoch, each about the last
 _COARSE, _FINE = np.logspace(-6.0, 5.0, 12), np.logspace(-0.8, 0.8, 9)
@@ -73,13 +75,26 @@ def _most_likely(evidence: Evidence, local: Local, order: int) -> tuple[float, W
     best = (np.inf, Wander(order, middle, 1.0))
     for factors in (_COARSE, _FINE):
         intensity = best[1].intensity * factors
-        track = _forward(evidence, local, order, intensity, evidence.times)
-        excess = np.clip(track.misfit / dof, 1e-12, 1e12)
-        unlikely = track.misfit / excess + dof * np.log(excess) + track.volume
+        misfit, volume = _likelihoods(evidence, local, order, intensity)
+        excess = np.clip(misfit / dof, 1e-12, 1e12)
+        unlikely = misfit / excess + dof * np.log(excess) + volume
         at = int(np.argmin(np.where(np.isfinite(unlikely), unlikely, np.inf)))
         wanders = Wander(order, float(intensity[at]), float(np.sqrt(excess[at])))
         best = (float(unlikely[at]), wanders)
     return best
+
+
+def _likelihoods(
+    evidence: Evidence, local: Local, order: int, intensity: Array
+) -> tuple[Array, Array]:
+    """Return misfit and volume (intensity,) of a filter with each intensity."""
+    if isinstance(evidence, KnownPoints) and compiled.available():
+        from debrisest.batch import smoother_loops
+
+        clock, start = _for_loops(evidence, local, order, evidence.times)
+        return smoother_loops.likelihoods(clock, evidence.loop_sums, start, intensity)
+    track = _forward(evidence, local, order, intensity, evidence.times)
+    return track.misfit, track.volume
 
 
 def smooth(evidence: Evidence, local: Local, found: Wander, times: Array) -> Path:
@@ -88,11 +103,8 @@ def smooth(evidence: Evidence, local: Local, found: Wander, times: Array) -> Pat
     NaN before the first epoch that tells its attitude.
     """
     scaled = evidence.scaled(found.noise)
-    intensity = np.array([found.intensity * found.noise**2])
-    track = _forward(scaled, local, found.order, intensity, times)
     merged, _ = _merged(scaled, times)
-    steps = _backward(track)
-    q, motion, spread = (np.array([step[part][0] for step in steps]) for part in range(3))
+    q, motion, spread = _smoothed(scaled, local, found, times)
     path = unknown_path(merged)._replace(
         q=q,
         rate=motion[:, :3],
@@ -103,6 +115,31 @@ def smooth(evidence: Evidence, local: Local, found: Wander, times: Array) -> Pat
     for part in chosen[1:]:
         part[times < merged[0]] = np.nan
     return chosen._replace(times=times)
+
+
+def _smoothed(
+    evidence: Evidence, local: Local, found: Wander, times: Array
+) -> tuple[Array, Array, Array]:
+    """Return attitudes, motions and covariances (time, ...) of a filter's way and back."""
+    intensity = found.intensity * found.noise**2
+    if isinstance(evidence, KnownPoints) and compiled.available():
+        from debrisest.batch import smoother_loops
+
+        clock, start = _for_loops(evidence, local, found.order, times)
+        return smoother_loops.smoothed(clock, evidence.loop_sums, start, intensity)
+    steps = _backward(_forward(evidence, local, found.order, np.array([intensity]), times))
+    q, motion, spread = (np.array([step[part][0] for step in steps]) for part in range(3))
+    return q, motion, spread
+
+
+def _for_loops(
+    evidence: KnownPoints, local: Local, order: int, times: Array
+) -> tuple[tuple[Array, IntArray], tuple[Array, Array, Array]]:
+    """Return clock and start as `smoother_loops` take them."""
+    merged, epochs = _merged(evidence, times)
+    start = _start(evidence, local, order, 1)
+    clock = np.diff(merged, prepend=merged[0]), epochs
+    return clock, (start.q[0], start.motion[0], start.spread[0])
 
 
 def _merged(evidence: Evidence, times: Array) -> tuple[Array, IntArray]:

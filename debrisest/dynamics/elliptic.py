@@ -5,6 +5,8 @@ matter, and beyond ``1 - 1e-10`` it is wrong for arguments longer than a quarter
 complement ``1 - m`` is given, which a body that tumbles near its separatrix has in full.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 import scipy
 
@@ -16,24 +18,39 @@ def quarter_period(complement: Array) -> Array:
     return np.asarray(scipy.special.ellipkm1(complement))
 
 
-def elliptic(argument: Array, complement: Array) -> tuple[Array, Array, Array]:
+class Modulus(NamedTuple):
+    """What all arguments share, arrays of one shape."""
+
+    quarter: Array
+    """Quarter period."""
+    landen: list[tuple[Array, Array]]
+    """Moduli ``k1`` of the successive transformations, with ``1 - k1``."""
+
+
+def modulus_of(complement: Array) -> Modulus:
+    """Return what functions of all arguments need of the complementary parameter ``1 - m``."""
+    return Modulus(quarter_period(complement), _landen_moduli(complement))
+
+
+def elliptic(argument: Array, complement: Array | Modulus) -> tuple[Array, Array, Array]:
     """``sn, cn, dn`` of real arguments, for ``0 < 1 - m <= 1``.
 
     Descending Landen transformations (DLMF 22.7(i)) down to the circular functions. ``1 - k1 sn^2``
     is written as ``(1 - k1) + k1 cn^2``, so that small values of ``cn`` and ``dn`` keep all digits.
     """
-    angle = argument / (4.0 * quarter_period(complement))
+    modulus = complement if isinstance(complement, Modulus) else modulus_of(complement)
+    angle = argument / (4.0 * modulus.quarter)
     angle -= np.round(angle)
     angle *= 2.0 * np.pi
     sn, cn = np.sin(angle), np.cos(angle)
     dn = np.ones_like(angle)
-    for modulus, rest in reversed(_landen_moduli(complement)):
-        divisor = modulus * sn
+    for k1, rest in reversed(modulus.landen):
+        divisor = k1 * sn
         divisor *= sn
         divisor += 1.0
-        sn *= 1.0 + modulus
+        sn *= 1.0 + k1
         sn /= divisor
-        next_dn = modulus * cn
+        next_dn = k1 * cn
         next_dn *= cn
         next_dn += rest
         next_dn /= divisor

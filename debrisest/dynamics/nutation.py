@@ -5,12 +5,13 @@ and solves for a phase that equal moments and steady spins leave undefined. Here
 theorem of the elliptic functions carries the initial rates themselves, and no case is special.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray, IntArray
-from debrisest.dynamics.elliptic import elliptic, quarter_period
+from debrisest.dynamics.elliptic import Modulus, elliptic, modulus_of
 
 _SLOWEST = 1e-150  # rad/s, the frequency of a body that does not nutate
 _SMALLEST_COMPLEMENT = 1e-290  # of the squared modulus, where half a period is endless
@@ -38,12 +39,17 @@ class Nutation:
 
     def of(self, some: BoolArray) -> "Nutation":
         """Return the nutation of some of the bodies."""
-        return Nutation(*(values[some] for values in vars(self).values()))
+        return Nutation(*(getattr(self, field.name)[some] for field in fields(self)))
+
+    @cached_property
+    def modulus(self) -> Modulus:
+        """What the elliptic functions need of the complement."""
+        return modulus_of(self.complement)
 
     @property
     def period(self) -> Array:
         """Period ``(..., 1)`` of the component about the circled axis, s."""
-        return 2.0 * quarter_period(self.complement) / self.frequency
+        return 2.0 * self.modulus.quarter / self.frequency
 
     @property
     def momentum0(self) -> Array:
@@ -65,7 +71,7 @@ class Nutation:
         """Rates ``(..., 3, time)`` in ``order``; their divisor is a sum of squares."""
         a, b, c = (self.rate0[..., [axis]] for axis in range(3))
         slope_a, slope_b, slope_c = (self.slope[..., [axis]] for axis in range(3))
-        sn, cn, dn = elliptic(self.frequency * times, self.complement)
+        sn, cn, dn = elliptic(self.frequency * times, self.modulus)
         span = sn / self.frequency
         divisor = self.dn2 + self.k2_sn2 * cn * cn
         rates = np.empty((*divisor.shape[:-1], 3, divisor.shape[-1]))

@@ -8,7 +8,6 @@ import numpy as np
 
 from debrisest.arrays import Array, ComplexArray, IntArray
 from debrisest.attitude import quaternion
-from debrisest.dynamics.elliptic import quarter_period
 from debrisest.dynamics.nutation import Nutation, nutation
 
 _AT_REST = 1e-150  # angular momentum that stands for none
@@ -35,7 +34,10 @@ def _precession(times: Array, motion: Nutation) -> Array:
     Its rate ``(2 T + L w_a) / (L + J_a w_a)`` is smooth and has the period of the circled
     component ``w_a``, so that its Fourier series can be integrated term by term.
     """
-    counts = _sample_counts(motion.complement[..., 0])
+    counts = _sample_counts(motion.modulus.quarter[..., 0])
+    if counts.size and np.all(counts == counts.flat[0]):
+        speed = _speed(motion, int(counts.flat[0]))
+        return _integrate_periodic(np.fft.rfft(speed, norm="forward"), motion.period, times)
     harmonics = np.zeros((*counts.shape, counts.max(initial=0) // 2 + 1), dtype=np.complex128)
     for count in set(counts.ravel().tolist()):
         some = counts == count
@@ -55,12 +57,11 @@ def _speed(motion: Nutation, count: int) -> Array:
     )
 
 
-def _sample_counts(complement: Array) -> IntArray:
+def _sample_counts(quarter: Array) -> IntArray:
     """Samples of a period that bring the series below rounding: it falls as ``exp(-pi K'/K)``.
 
     Each has as many as it would have alone, of a few numbers that runs share.
     """
-    quarter = quarter_period(complement)
     needed = 14.0 * np.where(np.isfinite(quarter), np.maximum(quarter, 2.0), 2.0)
     return _SAMPLES * np.ceil(needed / _SAMPLES).astype(np.int64)
 
