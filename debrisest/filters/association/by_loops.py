@@ -39,7 +39,8 @@ def filtered(
     start, counts = (state[:, 0], covariance[:, 0]), dict.fromkeys(FIGURES[2:], 0.0)
     writer = EstimatesWriter(model.error_names, *start, epochs, keep, counts, totals=["repairs"])
     beside, evidence = nothing_yet(model, *start)
-    recursive: Any = tuple(map(_blocks, (state, covariance, beside.pull, *beside.bank)))
+    apart, bank = np.swapaxes(beside.bank.apart, 1, 2), beside.bank.covariance
+    recursive: Any = tuple(map(_blocks, (state, covariance, beside.pull, apart, bank)))
     sums: Any = tuple(map(_blocks, evidence))
     told = state.copy(), covariance[:, 0].copy(), np.empty((len(FIGURES), runs))
     before, nominal = np.full((runs, *scans.shape[2:]), np.nan), _whole(state)
@@ -59,8 +60,9 @@ def filtered(
                 nominal = told[0].copy()
             mean, spread = told[0][:, 0], told[1]
             if settings.restless:
-                bank = Bank(*(_runs(part, runs) for part in recursive[3:]))
-                mean, spread = mixed(bank, _runs(sums[3], runs), mean)
+                apart, bank = (_runs(part, runs) for part in recursive[3:])
+                both = Bank(np.swapaxes(apart, 1, 2), bank)
+                mean, spread = mixed(both, _runs(sums[3], runs), mean)
             going = writer.runs
             figures: Data = {name: part[going] for name, part in zip(FIGURES, told[2])}
             writer.record(k, mean[going], spread[going], figures)

@@ -22,6 +22,16 @@ def multiplied(left: Array, right: Array, result: Array) -> None:
 
 
 @compiled
+def advanced(transition: Array, columns: Array, scratch: Array) -> None:
+    """Replace columns (n, m, run) by F times these."""
+    multiplied(transition, columns, scratch)
+    for i in range(columns.shape[0]):
+        for j in range(columns.shape[1]):
+            for r in range(columns.shape[2]):
+                columns[i, j, r] = scratch[i, j, r]
+
+
+@compiled
 def predicted(
     transition: Array, noise: Array, factor: float, covariance: Array, scratch: Array
 ) -> None:

@@ -14,6 +14,7 @@ from debrisest.arrays import Array
 from debrisest.compiled import compiled
 from debrisest.filters.association.companions import CLAIMED, NEAR
 from debrisest.filters.association.lane_loops import (
+    advanced,
     corrected,
     inverted,
     multiplied,
@@ -26,7 +27,7 @@ from debrisest.filters.association.weight_loops import mistaken, weigh
 
 Recursive = tuple[Array, Array, Array, Array, Array]
 """State (track, n) and covariance (track, n, n), pull (n, doubt), and of the bank the states apart
-(filter, n) and covariances (filter, n, n), all with the axes of blocks around."""
+(n, filter) and covariances (filter, n, n), all with the axes of blocks around."""
 Sums = tuple[Array, Array, Array, Array]
 """As `Evidence`, with the axes of blocks around."""
 Predicted = tuple[Array, Array, Array, Array]
@@ -47,8 +48,7 @@ def predict(
     states, covariances, pulls, aparts, banks = recursive
     blocks, tracks, n, lanes = states.shape
     by, whole = np.empty((n, n, lanes)), np.empty((n, n, lanes))
-    lag, after = np.empty((n, 1, lanes)), np.empty((n, 1, lanes))
-    of_pull = np.empty((n, pulls.shape[2], lanes))
+    lag, columns = np.empty((n, 1, lanes)), np.empty((n, max(pulls.shape[2], 2), lanes))
     for block in range(blocks):
         for t in range(tracks - 1, -1, -1):
             for r in range(lanes):
@@ -57,18 +57,15 @@ def predict(
                     lag[i, 0, r] = states[block, t, i, r] - nominal[run, t, i]
                     for j in range(n):
                         by[i, j, r] = transition[run, t, i, j]
-            multiplied(by, lag, after)
+            advanced(by, lag, columns)
             for r in range(lanes):
                 run = min(block * lanes + r, len(moved) - 1)
                 for i in range(n):
-                    states[block, t, i, r] = moved[run, t, i] + after[i, 0, r]
+                    states[block, t, i, r] = moved[run, t, i] + lag[i, 0, r]
             predicted(by, noise, 1.0, covariances[block, t], whole)
-        multiplied(by, pulls[block], of_pull)
-        pulls[block] = of_pull
+        advanced(by, pulls[block], columns)
+        advanced(by, aparts[block], columns)
         for f in range(len(FACTORS)):
-            lag[:, 0] = aparts[block, f]
-            multiplied(by, lag, after)
-            aparts[block, f] = after[:, 0]
             predicted(by, noise, FACTORS[f] ** 2, banks[block, f], whole)
 
 
@@ -89,9 +86,11 @@ def look(
     """
     (noise, gate, way, absence), (state, covariance) = fixed, recursive[:2]
     (sensors, detections), (blocks, tracks, n, lanes) = scan.shape[1:3], state.shape
-    h, cross, gain = np.empty((3, tracks, 2, n, lanes))
+    shape = tracks, 2, n, lanes
+    h, cross, gain = np.empty(shape), np.empty(shape), np.empty(shape)
     innovation = np.empty((tracks, detections, 2, lanes))
-    distance, probability = np.empty((2, tracks, detections, lanes))
+    distance = np.empty((tracks, detections, lanes))
+    probability = np.empty((tracks, detections, lanes))
     total, moments = np.empty((tracks, 3, lanes)), np.empty((tracks, 6, lanes))
     scratch = np.empty((2 * detections + 2, 2**tracks))
     told[2][:] = 0.0
@@ -131,17 +130,15 @@ def _expect(
             by = derivative[run, t, s]
             usable = True
             for a in range(2):
-                expected = points[run, t, s, a]
                 for i in range(n):
                     usable = usable and math.isfinite(by[a, i])
-                    expected += by[a, i] * (state[t, i, r] - nominal[run, t, i])
-                for i in range(scan.shape[2]):
-                    innovation[t, i, a, r] = scan[run, s, i, a] - expected
             for a in range(2):
+                expected = points[run, t, s, a] if usable else np.nan
                 for i in range(n):
                     h[t, a, i, r] = by[a, i] if usable else 0.0
-            if not usable:
-                innovation[t, :, :, r] = np.nan
+                    expected += h[t, a, i, r] * (state[t, i, r] - nominal[run, t, i])
+                for i in range(scan.shape[2]):
+                    innovation[t, i, a, r] = scan[run, s, i, a] - expected
 
 
 @compiled
@@ -208,7 +205,8 @@ def _count(
         near, ring = _pairs(before[run, s], now, noise)
         figures[7, run] += near
         figures[8, run] += ring
-        before[run, s] = now
+        for i in range(len(now)):
+            before[run, s, i, 0], before[run, s, i, 1] = now[i, 0], now[i, 1]
 
 
 @compiled
@@ -298,7 +296,7 @@ def _tell(
     h, gain, total, moments, _ = made
     pull, (n, lanes) = recursive[2][block], h.shape[1:]
     doubts, first = pull.shape[1], block * lanes
-    change, white = np.empty((2, 2, doubts, lanes))
+    change, white = np.empty((2, doubts, lanes)), np.empty((2, doubts, lanes))
     inverse = np.empty((3, lanes))
     multiplied(h, pull, change)
     for r in range(lanes):
@@ -320,21 +318,22 @@ def _tell(
                 moved = gain[0, i, r] * change[0, j, r] + gain[1, i, r] * change[1, j, r]
                 pull[i, j, r] -= moments[0, r] * moved
     for f in range(len(FACTORS)):
-        _tell_restless(made, recursive[3][block, f], recursive[4][block, f], sums[3][block, f])
+        _tell_restless(made, f, recursive[3][block], recursive[4][block, f], sums[3][block, f])
 
 
 @compiled
 def _tell_restless(
     made: tuple[Array, Array, Array, Array, Array],
+    f: int,
     apart: Array,
     covariance: Array,
     likelihood: Array,
 ) -> None:
     """Update a filter of the bank, and add to its logarithmic likelihood (run,)."""
     h, track_gain, _, moments, noise = made
-    n, lanes = apart.shape
-    cross, gain, scratch = np.empty((3, 2, n, lanes))
-    total, inverse = np.empty((2, 3, lanes))
+    n, _, lanes = apart.shape
+    cross, gain = np.empty((2, n, lanes)), np.empty((2, n, lanes))
+    total, inverse = np.empty((3, lanes)), np.empty((3, lanes))
     shown(h, covariance, moments[0], cross, total)
     for r in range(lanes):
         unseen = 0.0 if moments[0, r] > 0.0 else 1.0
@@ -343,21 +342,25 @@ def _tell_restless(
         total[2, r] += moments[5, r] + unseen * noise[1, 1]
     inverted(total, inverse)
     scaled(inverse, cross, gain)
-    x, y = moments[1].copy(), moments[2].copy()
+    x, y = np.empty(lanes), np.empty(lanes)
+    for r in range(lanes):
+        x[r], y[r] = moments[1, r], moments[2, r]
     for i in range(n):
         for r in range(lanes):
-            x[r] -= moments[0, r] * h[0, i, r] * apart[i, r]
-            y[r] -= moments[0, r] * h[1, i, r] * apart[i, r]
+            x[r] -= moments[0, r] * h[0, i, r] * apart[i, f, r]
+            y[r] -= moments[0, r] * h[1, i, r] * apart[i, f, r]
     for i in range(n):
         for r in range(lanes):
-            apart[i, r] += x[r] * gain[0, i, r] + y[r] * gain[1, i, r]
-            apart[i, r] -= moments[1, r] * track_gain[0, i, r] + moments[2, r] * track_gain[1, i, r]
+            apart[i, f, r] += x[r] * gain[0, i, r] + y[r] * gain[1, i, r]
+            apart[i, f, r] -= (
+                moments[1, r] * track_gain[0, i, r] + moments[2, r] * track_gain[1, i, r]
+            )
     for r in range(lanes):
         square = inverse[0, r] * x[r] ** 2 + 2.0 * inverse[1, r] * x[r] * y[r]
         square += inverse[2, r] * y[r] ** 2
         determinant = total[0, r] * total[2, r] - total[1, r] * total[1, r]
         likelihood[r] -= 0.5 * (square + math.log(abs(determinant)))
-    corrected(gain, cross, total, covariance, scratch)
+    corrected(gain, cross, total, covariance, np.empty((2, n, lanes)))
 
 
 @compiled

@@ -38,36 +38,38 @@ def all_seen(
     last, (run, observer, 2, doubt), are the target's.
     """
     (runs, tracks, n), observers = states.shape, observer.shape[1]
-    pixels = np.full((runs, tracks, observers, 2), np.nan)
+    pixels = np.empty((runs, tracks, observers, 2))
     by = np.zeros((runs, tracks, observers, 2, n))
     by_doubt = np.zeros((runs, observers, 2, doubts))
     point, turn, left, slope = np.empty(3), np.empty((3, 3)), np.empty((3, 3)), np.empty((2, 3))
     for r in range(runs):
         for t in range(tracks):
             for s in range(observers):
-                turn[:] = to_camera[r, s]
-                if n > 6:
-                    _turned(states[r, t, 6 + 3 * s : 9 + 3 * s], to_camera[r, s], turn, left)
+                _turn(states[r, t], s, to_camera[r, s], turn, left)
                 for a in range(3):
                     point[a] = 0.0
                     for i in range(3):
                         point[a] += turn[a, i] * (states[r, t, i] - observer[r, s, i])
-                if not point[2] > 0.0:
-                    by[r, t, s] = np.nan
-                    continue
                 _see(point, turn, scale[r], pixels[r, t, s], by[r, t, s], slope)
-                if n > 6:
-                    _by_bias(slope, left, by[r, t, s, :, 6 + 3 * s : 9 + 3 * s])
-                if t == 0:
-                    by_doubt[r, s, :, 0] = pixels[r, t, s]
-                    by_doubt[r, s, :, 1 + 3 * s : 4 + 3 * s] = slope[:, : min(3, doubts - 1)]
+                for a in range(2):
+                    for i in range(3):
+                        for j in range(3 if n > 6 else 0):
+                            by[r, t, s, a, 6 + 3 * s + i] += slope[a, j] * left[j, i]
+                        if n == 6 and t == 0 and point[2] > 0.0:
+                            by_doubt[r, s, a, 1 + 3 * s + i] = slope[a, i]
+                    if t == 0 and point[2] > 0.0:
+                        by_doubt[r, s, a, 0] = pixels[r, t, s, a]
     return pixels, by, by_doubt
 
 
 @compiled
 def _see(point: Array, turn: Array, scale: float, pixel: Array, by: Array, slope: Array) -> None:
-    """Write the pixel of a point, its derivative by the place, and by a turn of the camera."""
-    x, y, size = point[0] / point[2], point[1] / point[2], scale / point[2]
+    """Write the pixel of a point, its derivative by the place, and by a turn of the camera.
+
+    All is NaN of what is not in front of the camera.
+    """
+    size = scale / point[2] if point[2] > 0.0 else np.nan
+    x, y = size * point[0] / scale, size * point[1] / scale
     pixel[0], pixel[1] = scale * x, scale * y
     for i in range(3):
         by[0, i] = size * (turn[0, i] - x * turn[2, i])
@@ -77,31 +79,26 @@ def _see(point: Array, turn: Array, scale: float, pixel: Array, by: Array, slope
 
 
 @compiled
-def _by_bias(slope: Array, left: Array, by: Array) -> None:
-    """Write the derivative (2, 3) by an error of the attitude."""
-    for a in range(2):
+def _turn(state: Array, s: int, to_camera: Array, turn: Array, left: Array) -> None:
+    """Write the turn into camera axes, which may have an error, and the left Jacobian of that."""
+    if len(state) == 6:
         for i in range(3):
-            by[a, i] = 0.0
             for j in range(3):
-                by[a, i] += slope[a, j] * left[j, i]
-
-
-@compiled
-def _turned(bias: Array, to_camera: Array, turn: Array, left: Array) -> None:
-    """Write the turn into camera axes that is known with an error, and its left Jacobian."""
-    x, y, z = bias
+                turn[i, j] = to_camera[i, j]
+        return
+    bias = state[6 + 3 * s : 9 + 3 * s]
+    x, y, z = bias[0], bias[1], bias[2]
     square = x * x + y * y + z * z
     angle = math.sqrt(square)
     sine = math.sin(angle) / angle if angle > 0.0 else 1.0
     versed = 2.0 * (math.sin(0.5 * angle) / angle) ** 2 if angle > 0.0 else 0.5
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    exact = np.empty((3, 3))
+    cross, exact = ((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)), np.empty((3, 3))
     for i in range(3):
         for j in range(3):
             same = 1.0 if i == j else 0.0
             twice = bias[i] * bias[j] - square * same
-            exact[i, j] = same + sine * cross[i, j] + versed * twice
-            left[i, j] = same + 0.5 * cross[i, j] + twice / 6.0
+            exact[i, j] = same + sine * cross[i][j] + versed * twice
+            left[i, j] = same + 0.5 * cross[i][j] + twice / 6.0
     for i in range(3):
         for j in range(3):
             turn[i, j] = 0.0
