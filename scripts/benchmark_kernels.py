@@ -9,7 +9,6 @@ holds whole filters against their peers.
 import sys
 import time
 from collections.abc import Callable
-from functools import partial
 from types import SimpleNamespace
 from typing import Any
 from unittest.mock import patch
@@ -27,17 +26,21 @@ from debrisest.batch.descent import descend_all
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.tracks import tracks
 from debrisest.clock import Clock
+from debrisest.control.camera import Camera
+from debrisest.control.closed_loop import ClosedLoop
+from debrisest.control.rigid_spacecraft import spacecraft
+from debrisest.control.track import seen_from
+from debrisest.control.two_stage import Controller
+from debrisest.dynamics import kepler
 from debrisest.dynamics.log_inertia import log_ratios
-from debrisest.filters.association.evidence import Beside
-from debrisest.filters.association.restless import Bank
-from debrisest.filters.association.sensor import updated
-from debrisest.filters.association.update import Scan, Tracks
-from debrisest.filters.association.weights import Validation, probabilistic
+from debrisest.filters.association.single import associated
+from debrisest.filters.association.weights import Validation
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.camera_range import model as camera_range
 from debrisest.problems.camera_range import redundant_model
+from debrisest.problems.orbit_from_pixels.model import ObserverGeometry, scan_model
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
 from debrisest.problems.stereo_pose.truth import draw_guess
@@ -70,9 +73,10 @@ def kernels() -> dict[str, Kernel]:
         "91 states, sigma points of 20 runs moved": sigma_points(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
         **{
-            f"association, one sensor of seven detections, {runs} runs": association(runs)
+            f"association, 30 epochs of three detections, {runs} runs": association(runs)
             for runs in (100, 1)
         },
+        "pointing loop of two satellites, 40 s": pointing(),
     }
 
 
@@ -142,25 +146,48 @@ def of_replay() -> dict[str, Kernel]:
 
 
 def association(runs: int) -> Kernel:
-    """Return the update of a target's track, and of what runs beside it, by one sensor."""
+    """Return a filter of a target among clutter that two cameras see, over 30 epochs."""
     draws = np.random.default_rng(runs)
-
-    def positive(*axes: int) -> Array:
-        root = draws.normal(size=(*axes, 6, 8))
-        return root @ np.swapaxes(root, -2, -1)
-
-    tracks = Tracks(draws.normal(size=(runs, 1, 6)), positive(runs, 1))
-    bank = Bank(draws.normal(size=(runs, 2, 6)), positive(runs, 2))
-    beside = Beside(draws.normal(size=(runs, 6, 7)), bank)
-    seen = draws.normal(size=(runs, 1, 1, 7, 2)), draws.normal(size=(runs, 1, 1, 2, 6))
-    doubted = draws.normal(size=(runs, 1, 2, 7))
-    weigh = partial(probabilistic, validation=Validation(), d=2)
+    still = np.repeat([[1e6, 0.0, 0.0, 0.0, 0.0, 0.0]], runs, axis=0)
+    orbit = ObserverGeometry(
+        step=1.0,
+        observer=np.tile([[7e6, 0.0, 0.0], [7e6, 1e5, 0.0]], (30, runs, 1, 1)),
+        to_camera=np.tile([[0.0, 1, 0], [0, 0, 1], [1, 0, 0]], (30, runs, 2, 1, 1)),
+        scale=np.full(runs, 335.0),
+        acceleration_noise=np.array(0.1),
+        pixel_variance=np.array(1.0),
+        with_bias=False,
+    )
+    still[:, 0] += 7e6
+    covariance = np.tile(1e4 * np.eye(6), (runs, 1, 1))
+    scans = 5.0 * draws.normal(size=(runs, 30, 2, 3, 2))
+    scans[:, :, 1, :, 0] -= 33.5
 
     def kernel() -> tuple[Array, ...]:
-        new, apart, shown, _ = updated(tracks, beside, Scan(*seen), doubted, np.eye(2), 9.21, weigh)
-        return (*new, apart.pull, *apart.bank, shown.score, shown.likelihood)
+        found = associated(scan_model(orbit), still, covariance, scans, Validation())
+        return found.state, found.sigma
 
     return kernel
+
+
+def pointing() -> Kernel:
+    """Return a closed loop of two satellites that turn for half a minute."""
+    times, node = np.arange(40.0), np.radians([10.0, 7.0])
+    orbits = kepler.state_from_elements(7.5e6, 0.1, 0.5, node, 1.5, 0.14)
+    satellites = (x.swapaxes(0, 1)[None] for x in kepler.propagate(*orbits, times))
+    debris = kepler.propagate(*kepler.state_from_elements(7.49e6, 0.1, 0.35, 0.6, 1.2, 0.14), times)
+    craft, scale = spacecraft(np.diag([1.07e-3, 1.04e-3, 0.96e-3])), np.array([[335.0]])
+    factors = np.full((1, 50, 2, 6), 1.05)
+    loop = ClosedLoop(
+        controller=Controller(craft, scale),
+        camera=Camera(scale, np.array([[[240.0, 180.0]]]), 100.0, rounded=True),
+        plant=craft,
+        track=seen_from(*(x[None] for x in debris), *satellites),
+        step=1.0,
+        substeps=50,
+        factors=lambda: factors,
+    )
+    return lambda: (loop.run(np.zeros((1, 2, 3))).angles,)
 
 
 def compared(kernel: Kernel, rounds: int) -> tuple[list[float], list[float], float]:

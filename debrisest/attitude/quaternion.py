@@ -11,8 +11,8 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.attitude.vectors import cross
 
-_NEWTON_STEPS = 30  # of which six are taken, and more only where two rotations are about as near
-_ABOVE = 1e-9  # of the norm of a matrix, by which its eigenvalue is missed: nothing is singular
+NEWTON_STEPS = 30  # of which six are taken, and more only where two rotations are about as near
+ABOVE = 1e-9  # of the norm of a matrix, by which its eigenvalue is missed: nothing is singular
 
 
 def multiply(p: Array, q: Array) -> Array:
@@ -78,14 +78,14 @@ def nearest(matrix: Array) -> Array:
     davenport = _products(matrix) - np.eye(4)
     linear, constant = -8.0 * np.linalg.det(matrix), np.linalg.det(davenport)
     value = np.full(linear.shape, np.sqrt(3.0))
-    for _ in range(_NEWTON_STEPS):
+    for _ in range(NEWTON_STEPS):
         square = value * value
         slope = np.maximum(4.0 * value * (square - 1.0) + linear, 1e-8)
         step = ((square - 2.0) * square + linear * value + constant) / slope
         value -= np.maximum(step, 0.0)
         if not np.any(step > 1e-13):
             break
-    above = (value + _ABOVE)[..., None, None] * np.eye(4)
+    above = (value + ABOVE)[..., None, None] * np.eye(4)
     inverse = np.asarray(np.linalg.inv(above - davenport), dtype=np.float64)
     row = _largest_row(inverse)[..., None]
     return _positive((inverse @ (inverse @ row / _length(row[..., 0])[..., None]))[..., 0])

@@ -7,6 +7,7 @@ three points with it, and places of all points of these epochs at these attitude
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array
 from debrisest.batch.free_points import FreePoints
 from debrisest.batch.point_sums import KnownPoints
@@ -31,15 +32,14 @@ def align_clouds(tracks: Tracks) -> FreePoints:
     model, known = tracks.centred()[first], tracks.seen[first]
     robust, passed = tracks.weight, [model]
     for _ in range(_ROUNDS):
-        visible = tracks._replace(weight=np.where(known, robust, 0.0))
-        q = KnownPoints(visible, model).seen().q
+        q = _attitudes(tracks._replace(weight=np.where(known, robust, 0.0)), model)
         told = np.isfinite(q[:, 0])
         cloud = FreePoints(Tracks(*(part[told] for part in tracks._replace(weight=robust))), model)
         if not told.any():
             break
         settled = cloud.settled(q[told])
         now = settled.tracks.weight.sum(axis=0) > 0.0
-        change = _change(settled, model, known & now)
+        change = _change(cloud, settled.model, model, known & now)
         robust = _robust(tracks, settled.model, q, told)
         same = np.array_equal(now, known)
         model, known = settled.model, now
@@ -50,6 +50,16 @@ def align_clouds(tracks: Tracks) -> FreePoints:
             model = ahead(*passed)
             passed = [model]
     return FreePoints(tracks._replace(weight=np.where(known, tracks.weight, 0.0)), model)
+
+
+def _attitudes(tracks: Tracks, model: Array) -> Array:
+    """Return attitudes (time, 4), NaN where an epoch does not tell all three directions."""
+    if not compiled.available():
+        return KnownPoints(tracks, model).seen().q
+    from debrisest.batch import free_points_loops
+
+    seen = tracks.points, tracks.weight, model
+    return free_points_loops.attitudes(*map(np.ascontiguousarray, seen))
 
 
 def ahead(first: Array, second: Array, third: Array) -> Array:
@@ -82,17 +92,23 @@ def _spread(tracks: Tracks) -> Array:
 def _robust(tracks: Tracks, model: Array, q: Array, told: Array) -> Array:
     """Weights (time, feature), less for points that are far off (Cauchy)."""
     attitude = np.where(told[:, None], q, [1.0, 0.0, 0.0, 0.0])
-    residual = np.nan_to_num(KnownPoints(tracks, model).residuals(attitude))
-    square = np.sum(residual**2, axis=-1) * tracks.weight
+    if compiled.available():
+        from debrisest.batch import free_points_loops
+
+        seen = tracks.points, tracks.weight, model, attitude
+        square = free_points_loops.residual_squares(*map(np.ascontiguousarray, seen))[0]
+    else:
+        residual = np.nan_to_num(KnownPoints(tracks, model).residuals(attitude))
+        square = np.sum(residual**2, axis=-1) * tracks.weight
     weight = tracks.weight / (1.0 + square / _CAUCHY)
     return np.where(told[:, None], weight, tracks.weight)
 
 
-def _change(cloud: FreePoints, before: Array, both: Array) -> float:
+def _change(cloud: FreePoints, after: Array, before: Array, both: Array) -> float:
     """Largest change of places, in standard deviations, whatever the cloud's frame does."""
     if both.sum() < 3:
         return np.inf
-    new, old = cloud.model[both], before[both]
+    new, old = after[both], before[both]
     new, old = new - new.mean(axis=0), old - old.mean(axis=0)
     moved = np.linalg.norm(new - old, axis=-1)
     sigma = np.sqrt(np.diag(cloud.inverse_laplacian)[both])

@@ -11,6 +11,7 @@ from typing import Self
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray
 from debrisest.attitude import quaternion
 from debrisest.batch.arc import UNKNOWNS, Course
@@ -56,13 +57,29 @@ class FreePoints:
 
     def settled(self, q: Array) -> Self:
         """Return it with the points that fit attitudes (time, 4) best."""
-        back = self.tracks.centred() @ quaternion.to_matrix(q)
-        pull = np.sum(self.tracks.weight[..., None] * back, axis=0)
+        if compiled.available():
+            from debrisest.batch import free_points_loops
+
+            pull = free_points_loops.pulled(*self._seen, np.ascontiguousarray(q))
+        else:
+            back = self.tracks.centred() @ quaternion.to_matrix(q)
+            pull = np.sum(self.tracks.weight[..., None] * back, axis=0)
         return type(self)(self.tracks, self.inverse_laplacian @ pull)
+
+    @property
+    def _seen(self) -> tuple[Array, Array]:
+        """Points and weights as the loops take them."""
+        return np.ascontiguousarray(self.tracks.points), np.ascontiguousarray(self.tracks.weight)
 
     def told(self, q: Array, rate: Array, epochs: Epochs = slice(None)) -> Told:
         """Return what the epochs say at attitudes (..., 4), the points being where they are."""
-        return self.known.told(q, rate, epochs)
+        if q.ndim > 2 or not isinstance(epochs, slice) or not compiled.available():
+            return self.known.told(q, rate, epochs)
+        from debrisest.batch import free_points_loops
+
+        points, weight = (np.ascontiguousarray(part[epochs]) for part in self._seen)
+        told = free_points_loops.told(points, weight, self.model, np.ascontiguousarray(q))
+        return Told(*told)
 
     def normal(self, course: Course) -> Normal:
         """Return the normal equations of arcs, the points at their best, one after the other."""
@@ -70,12 +87,21 @@ class FreePoints:
             each = [self.normal(Course(*parts)) for parts in zip(*course)]
             return Normal(*(np.stack(parts) for parts in zip(*each)))
         settled = self.settled(course.q)
-        normal = settled.known.normal(course)
-        cross = settled.cross(course)
+        normal, cross = settled._at_rest(course)
         spent = np.tensordot(
             cross, np.tensordot(self.inverse_laplacian, cross, 1), ((0, 1), (0, 1))
         )
         return normal._replace(hold=normal.hold - spent)
+
+    def _at_rest(self, course: Course) -> tuple[Normal, Array]:
+        """Return the normal equations, the points being where they are, and `cross`."""
+        if not compiled.available():
+            return self.known.normal(course), self.cross(course)
+        from debrisest.batch import free_points_loops
+
+        motion = (np.ascontiguousarray(part) for part in (course.q, course.turn_by))
+        chi2, pull, hold, cross = free_points_loops.normal(*self._seen, self.model, *motion)
+        return Normal(np.asarray(chi2), pull, hold), cross
 
     def cross(self, course: Course) -> Array:
         """Information (feature, 3, 11) between places and unknowns of the arc."""
@@ -97,7 +123,10 @@ class FreePoints:
         """Return the chi-squares (...) of all epochs, the points at their best."""
         if q.ndim > 2:
             return np.stack([self.chi2(*parts) for parts in zip(q, rate)])
-        return self.settled(q).known.chi2(q, rate)
+        settled = self.settled(q)
+        if compiled.available():
+            return np.asarray(settled.told(q, rate).chi2.sum())
+        return settled.known.chi2(q, rate)
 
     def within(self, epochs: BoolArray) -> Self:
         """Return the evidence of some epochs."""
@@ -109,7 +138,14 @@ class FreePoints:
 
     def squares(self, q: Array, rate: Array) -> Array:
         """Return squares of the residuals (time, feature), the points at their best."""
-        return self.settled(q).known.squares(q, rate)
+        settled = self.settled(q)
+        if not compiled.available():
+            return settled.known.squares(q, rate)
+        from debrisest.batch import free_points_loops
+
+        seen = *self._seen, settled.model, np.ascontiguousarray(q)
+        square, own = free_points_loops.residual_squares(*seen)
+        return np.where(self.tracks.seen, square / own, np.nan)
 
     def gated(self, q: Array, rate: Array, limit: float) -> Self:
         """Return it without points off by more than ``limit`` (three degrees of freedom)."""

@@ -6,13 +6,15 @@ control steps.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.attitude import euler, quaternion
-from debrisest.control import schedule, two_stage
+from debrisest.control import schedule, turning, two_stage
 from debrisest.control.camera import Camera
 from debrisest.control.rigid_spacecraft import Spacecraft, reference_rate_b
 from debrisest.control.schedule import State
@@ -113,10 +115,13 @@ class ClosedLoop:
 
     def _turned(self, epoch: int, state: State, factors: Array, result: Pointing) -> State:
         """The state after the control steps of one epoch, recorded for the runs that turn."""
-        step, turning = self.step / self.substeps, state.turning
+        step, turns = self.step / self.substeps, state.turning
         angles, rate_b, memory = state.angles, state.rate_b, state.memory
         reference = self.track.rate_o[:, epoch] * self.turning_axes
         points = between(self.track, epoch, self.step, self.substeps)
+        if compiled.available():
+            given = points, factors, reference, state, self._constants, tuple(result[3:])
+            return turning.turned((epoch, step), *given)
         for j, factor in enumerate(np.moveaxis(factors, 1, 0)):
             shown = self.camera.shown(points[j], angles)
             measured = angles * factor[..., :3], rate_b * factor[..., 3:]
@@ -124,10 +129,16 @@ class ClosedLoop:
                 self.controller, memory, self.camera.measured(shown), *measured, step
             )
             for history, now in zip(result[3:], (memory.stage, shown[0], torque, rate_b)):
-                history[turning, epoch, j] = now[turning]
+                history[turns, epoch, j] = now[turns]
             acting = self.delivered * torque
             angles, rate_b = self.plant.move(angles, rate_b, acting, reference, step)
         return state._replace(angles=angles, rate_b=rate_b, memory=memory)
+
+    @cached_property
+    def _constants(self) -> turning.Constants:
+        runs, _, satellites = self.track.point_o.shape[:3]
+        own = self.controller, self.camera, self.plant, self.delivered
+        return turning.constants(*own, (runs, satellites))
 
 
 def _left_behind(angles: Array, turn_o: Array) -> Array:

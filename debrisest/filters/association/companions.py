@@ -6,15 +6,15 @@ from debrisest.arrays import Array, IntArray
 from debrisest.filters.association.update import Judged
 from debrisest.filters.linear_algebra import solve
 
-_CLAIMED = 0.5
-_NEAR = 2.0
+CLAIMED = 0.5
+NEAR = 2.0
 """Squared distance of a pair, in units of the noise of a difference, that 63 % of the pairs of one
 piece are within; of two in a smooth crowd, as many lie between once and twice it."""
 
 
 def unclaimed(innovation: Array, judged: Judged) -> Array:
     """Detections beside the target (run, sensor, detection, d), NaN what is likely a track's."""
-    claimed = np.asarray((judged.probability > _CLAIMED).any(1))
+    claimed = np.asarray((judged.probability > CLAIMED).any(1))
     return np.where(claimed[..., None], np.nan, innovation[:, 0])
 
 
@@ -26,5 +26,5 @@ def pairs(before: Array, now: Array, noise: Array) -> tuple[IntArray, IntArray]:
     apart = now[..., :, None, :] - before[..., None, :, :]
     square = (apart * (apart @ solve(2.0 * noise, np.eye(len(noise))))).sum(-1)
     return tuple(
-        ((least <= square) & (square < least + _NEAR)).sum((1, 2, 3)) for least in (0.0, _NEAR)
+        ((least <= square) & (square < least + NEAR)).sum((1, 2, 3)) for least in (0.0, NEAR)
     )

@@ -11,7 +11,7 @@ from debrisest.filters.association.weights import Validation, weights
 MOST_TRACKS = 8
 """Memory grows with tracks times 4^tracks."""
 
-_SMALLEST_PRODUCT = 1e-300
+SMALLEST_PRODUCT = 1e-300
 
 
 class _Links(NamedTuple):
@@ -40,7 +40,7 @@ def joint(distance: Array, validation: Validation, d: int) -> Array:
     at least so much that the product over all tracks does not underflow.
     """
     found = weights(distance, validation, d)
-    least = _SMALLEST_PRODUCT ** (1.0 / distance.shape[-2])
+    least = SMALLEST_PRODUCT ** (1.0 / distance.shape[-2])
     return exclusive(found.present, np.maximum(found.absent, least))
 
 

@@ -5,18 +5,21 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
+from debrisest.filters.association import by_loops
 from debrisest.filters.association.companions import pairs, unclaimed
 from debrisest.filters.association.evidence import (
     Beside,
     Evidence,
+    corrected,
     no_evidence,
     nothing_yet,
     predicted,
 )
 from debrisest.filters.association.restless import Bank, mixed
-from debrisest.filters.association.sensor import Given, updated
-from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh
+from debrisest.filters.association.update import Judged, Scan, Tracks, Weigh, update
+from debrisest.filters.association.weighing import Weighing
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.runs import take
 from debrisest.filters.scan_model import ScanModel
@@ -101,8 +104,12 @@ def filtered(
 ) -> Estimates:
     """Return the estimates of track 0; `state` (run, track, n), else as `associated`.
 
-    The counts hold sums over the epochs too, the `Evidence` by its names.
+    The counts hold sums over the epochs too, the `Evidence` by its names. Sensors of two components
+    that update one after the other have compiled loops.
     """
+    one_by_one = scans.shape[-1] == 2 and not (settings.stacked and scans.shape[2] > 1)
+    if one_by_one and len(state) and isinstance(settings.weigh, Weighing) and compiled.available():
+        return by_loops.filtered(model, state, covariance, scans, settings, keep)
     names, epochs, counts = model.error_names, scans.shape[1], dict.fromkeys(COUNTED, 0.0)
     start = state[:, 0], covariance[:, 0]
     writer = EstimatesWriter(names, *start, epochs, keep, counts, totals=["repairs"])
@@ -143,8 +150,7 @@ def _estimate(tracks: Tracks, bank: Bank | None, likelihood: Array) -> tuple[Arr
 def _predict(
     model: ScanModel, tracks: Tracks, beside: Beside, nominal: Array, k: int
 ) -> tuple[Tracks, Beside, Array]:
-    moved = model.process(nominal, k)
-    transition = np.broadcast_to(model.process_jacobian(nominal, k), tracks.covariance.shape)
+    moved, transition = model.moved(nominal, k)
     transposed = np.swapaxes(transition, -2, -1)
     lag = (tracks.state - nominal)[..., None, :] @ transposed
     covariance = transition @ tracks.covariance @ transposed
@@ -163,31 +169,24 @@ def _look(
     k: int,
 ) -> tuple[Tracks, Beside, _Look]:
     """Update by all sensors; `scan` is (run, sensor, detection, d)."""
-    shown = model.points(nominal, k)
-    h = np.broadcast_to(model.points_jacobian(nominal, k), (*shown.shape, nominal.shape[-1]))
+    shown, h, doubted = model.seen(nominal, k)
     nothing = np.zeros(len(scan), dtype=np.int64)
     zero = nothing.astype(np.float64)
     seen = _Seen(zero, nothing, nothing, nothing, nothing, nothing, zero)
-    doubted, evidence = _doubted(model, nominal, k), no_evidence(len(scan), len(model.doubts))
+    evidence = no_evidence(len(scan), len(model.doubts))
     others = np.full(scan.shape, np.nan)
     for group in _groups(shown.shape[-2], settings.stacked):
         lag = tracks.state - nominal
         predicted = shown[:, :, group] + (h[:, :, group] @ lag[:, :, None, :, None])[..., 0]
         innovation = scan[:, None, group] - predicted[..., None, :]
         part = Scan(innovation, h[:, :, group])
-        known = doubted[:, group], model.noise, settings.gate, settings.weigh
-        tracks, beside, more, judged = updated(Given(tracks, beside, part, *known))
+        judge = model.noise, settings.gate, settings.weigh
+        tracks, made, judged = update(tracks, part, *judge)
+        beside, more = corrected(beside, made, doubted[:, group])
         seen = seen.plus(judged, shown.shape[-1])
         evidence = evidence.plus(more)
         others[:, group] = unclaimed(innovation, judged)
     return tracks, beside, _Look(seen, evidence, others)
-
-
-def _doubted(model: ScanModel, nominal: Array, k: int) -> Array:
-    """Derivative (run, sensor, d, doubt) of what the target shows; zero of what is not seen."""
-    if model.doubted is None:
-        return np.zeros((*model.points(nominal[:, 0], k).shape, 0))
-    return np.nan_to_num(model.doubted(nominal[:, 0], k))
 
 
 def _groups(sensors: int, stacked: bool) -> list[slice]:

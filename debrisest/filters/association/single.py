@@ -1,16 +1,14 @@
 """Extended Kalman filter of a target among unlabelled detections, batched over runs."""
 
 from collections.abc import Sequence
-from functools import partial
 from typing import Literal, get_args
 
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
-from debrisest.filters.association.joint import joint
 from debrisest.filters.association.recursion import AssociationSettings, filtered
-from debrisest.filters.association.update import Weigh
-from debrisest.filters.association.weights import Validation, nearest, probabilistic
+from debrisest.filters.association.weighing import Way, Weighing
+from debrisest.filters.association.weights import Validation
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.scan_model import ScanModel
 
@@ -58,7 +56,7 @@ def associated(
     not if `stacked`: else it is cut off at the gate, and drawn to small values by the choice.
     """
     gate = np.inf if method == "known" else validation.gate
-    weigh = _weigh(validation, method, scans)
+    weigh = _weighing(validation, method, scans)
     every = relinearise if truth is None else 0
     settings = AssociationSettings(gate, weigh, stacked, every, truth, restless)
     return filtered(model, state[:, None], covariance[:, None], scans, settings, keep)
@@ -80,7 +78,7 @@ def jointly_associated(
     the target, whose estimates come back. No detection is that of two tracks (Fortmann, Bar-Shalom
     and Scheffe 1983). A track that is NaN is not there.
     """
-    weigh = partial(_joint_by_sensor, validation=validation.checked(), d=scans.shape[-1])
+    weigh = Weighing("joint", validation.checked(), scans.shape[-1])
     settings = AssociationSettings(validation.gate, weigh, stacked, relinearise=1, truth=None)
     return filtered(model, state, covariance, scans, settings, keep)
 
@@ -91,17 +89,10 @@ def labelled(scans: Array, index: IntArray) -> Array:
     return np.where(index[..., None, None] >= 0, np.take_along_axis(scans, chosen, axis=-2), np.nan)
 
 
-def _weigh(validation: Validation, method: Method, scans: Array) -> Weigh:
+def _weighing(validation: Validation, method: Method, scans: Array) -> Weighing:
     if method not in get_args(Method):
         raise ValueError(f"method must be one of {get_args(Method)}, not {method!r}")
     if method == "known" and scans.shape[-2] != 1:
         raise ValueError(f"known detections come alone in their scan, not {scans.shape[-2]}")
-    if method == "probabilistic":
-        return partial(probabilistic, validation=validation.checked(), d=scans.shape[-1])
-    validation.checked()
-    return nearest
-
-
-def _joint_by_sensor(distance: Array, validation: Validation, d: int) -> Array:
-    by_sensor = joint(np.swapaxes(distance, 1, 2), validation, d)
-    return np.swapaxes(by_sensor, 1, 2)
+    way: Way = "probabilistic" if method == "probabilistic" else "nearest"
+    return Weighing(way, validation.checked(), scans.shape[-1])

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
@@ -54,6 +55,7 @@ class ObserverGeometry(NamedTuple):
 def scan_model(known: ObserverGeometry) -> ScanModel:
     """Return the model of one clock step."""
     observers = known.observer.shape[2]
+    fast = compiled.available() and known.step <= perturbed_orbit.LONGEST_STEP
     names = [f"{part}_{axis}" for part in ("position", "velocity") for axis in "xyz"]
     if known.with_bias:
         names += [f"bias_{s + 1}_{axis}" for s in range(observers) for axis in "xyz"]
@@ -68,7 +70,22 @@ def scan_model(known: ObserverGeometry) -> ScanModel:
         doubts=doubts(known),
         doubted=lambda state, k: doubted(known, state, k),
         select=lambda runs: scan_model(known.of(runs)),
+        both=(lambda state, _: _both(known, state)) if fast else None,
+        all_seen=(lambda state, k: _all_seen(known, state, k)) if fast else None,
     )
+
+
+def _both(known: ObserverGeometry, state: Array) -> tuple[Array, Array]:
+    from debrisest.problems.orbit_from_pixels import model_loops
+
+    return model_loops.both(state, known.step)
+
+
+def _all_seen(known: ObserverGeometry, state: Array, k: int) -> tuple[Array, Array, Array]:
+    from debrisest.problems.orbit_from_pixels import model_loops
+
+    cameras = known.observer[k], known.to_camera[k], known.scale
+    return model_loops.all_seen(state, *cameras, len(doubts(known)))
 
 
 def process(known: ObserverGeometry, state: Array) -> Array:
