@@ -5,6 +5,7 @@ import pytest
 
 from debrisest import compiled
 from debrisest.dynamics.torque_free_sensitivity import torque_free_arc
+from debrisest.filters.replay.frame_update import Belief, covariance_of, predict, update
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.problems.stereo_pose.model import Shown
 
@@ -63,6 +64,27 @@ def test_linearised_costs_are_the_same(monkeypatch, experiment, shown, q_lc) -> 
         return linearize(test.model, arc, test.prior, 14)
 
     same(*both(monkeypatch, found))
+
+
+@pytest.mark.parametrize("gate", [False, True])
+@pytest.mark.parametrize(
+    "shown", [Shown(), Shown(flow=False), Shown(acceleration=True), Shown(True, False, False, True)]
+)
+def test_a_frame_of_the_filter_is_the_same(monkeypatch, experiment, shown, gate) -> None:
+    def found():
+        test = experiment(3, 20, 2, shown=shown, q_lc=TURNED, rate=(-9.0, 5.0, 7.0))
+        assert (test.model.frames is not None) == compiled.available()
+        measured = test.measured.copy()
+        measured[0, 12, 3:5] += gate
+        measured[1, 12, -2:] = np.nan
+        arc = measured_arc(test.model, test.prior, test.covariance, measured)
+        at = linearize(test.model, arc, test.truth[:, 0], 11)
+        belief = Belief(at.last_state, 1e-2 * at.information)
+        belief, frame = update(test.model, predict(test.model, belief, 12), arc, 12, gate)
+        assert frame.rejected[0] == 2 * gate
+        return *belief, frame.nis, covariance_of(test.model, belief), arc.weight
+
+    same(*both(monkeypatch, found), 1e-9)
 
 
 @pytest.mark.parametrize("options", [{}, {"gate": True}])

@@ -33,6 +33,9 @@ def predict(model: ReplayModel, belief: Belief, k: int) -> Belief:
     """Belief of epoch k from that of k - 1."""
     states, sensitivity = model.trajectory(belief.state, k - 1, k)
     state = states[:, -1]
+    if model.frames is not None:
+        moved = belief.state, state, belief.information, sensitivity[:, -1]
+        return Belief(state, model.frames.carry(*moved, k - 1, k))
     transition = model.transition(sensitivity[:, -1], k - 1, k)
     inverse = inverse_of_some_rows(transition)
     back = model.chart(belief.state) @ inverse @ model.inverse_chart(state)
@@ -52,6 +55,12 @@ def update(
     """
     frame = slice(k, k + 1)
     state, information = predicted.state.copy(), predicted.information.copy()
+    if model.frames is not None:
+        measured, weight = arc.measured[:, k].copy(), arc.weight[:, k].copy()
+        own = state, information, k, measured, weight, gate
+        nis = model.frames.update(*own, (_ITERATIONS, _CONVERGED))
+        arc.weight[:, k] = weight
+        return Belief(state, information), _frame(arc, k, nis)
     runs, nis = np.arange(len(state)), np.empty(len(state))
     for iteration in range(_ITERATIONS):
         at = state[runs]
@@ -80,8 +89,20 @@ def update(
         runs = runs[~(decrement < _CONVERGED)]
         if len(runs) == 0:
             break
+    return Belief(state, information), _frame(arc, k, nis)
+
+
+def covariance_of(model: ReplayModel, belief: Belief) -> Array:
+    """Return the plain covariance (run, n_e, n_e)."""
+    if model.frames is not None:
+        return model.frames.covariance(*belief)
+    back = model.inverse_chart(belief.state)
+    return back @ scaled_inverse(belief.information) @ np.swapaxes(back, -1, -2)
+
+
+def _frame(arc: MeasuredArc, k: int, nis: Array) -> Frame:
     used = (arc.weight[:, k] > 0.0).sum(-1)
-    return Belief(state, information), Frame(nis, used, arc.seen[:, k].sum(-1) - used)
+    return Frame(nis, used, arc.seen[:, k].sum(-1) - used)
 
 
 def first_frame(arc: MeasuredArc, solution: Solution, k: int) -> Frame:

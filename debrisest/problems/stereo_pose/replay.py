@@ -9,7 +9,7 @@ from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import transitions
 from debrisest.filters.replay.normal_equations import normal_equations
-from debrisest.filters.replay_model import PointRows, ReplayModel
+from debrisest.filters.replay_model import Frames, PointRows, ReplayModel
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose.doubts import doubts
 from debrisest.problems.stereo_pose.mirror import mirror
@@ -39,7 +39,7 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
     """
     points = known.points
     centre = transitions(known.leader, known.steps)
-    back = np.linalg.inv(centre)
+    back: Array = np.linalg.inv(centre)
 
     def at_epochs(states: Array, turning: Array, first: int, epochs: IntArray) -> PointRows:
         return point_rows(known, states, turning, centre[epochs] @ back[first], epochs)
@@ -75,7 +75,38 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
         point_rows=at_epochs,
         sums=sums if compiled.available() else None,
         course=lambda state, last: _course(known, state, last),
+        frames=_frames(known, sigma, centre, back) if compiled.available() else None,
     )
+
+
+def _frames(known: StereoGeometry, sigma: Array, centre: Array, back: Array) -> Frames:
+    """The filter between the anchors, by compiled loops."""
+    from debrisest.problems.stereo_pose.carry_loops import carried
+    from debrisest.problems.stereo_pose.frame_loops import covariances, updated
+
+    axes = np.eye(3) if known.to_camera is None else known.to_camera.copy()
+    camera = axes, known.baseline, known.rows, sigma
+
+    def carry(
+        before: Array, after: Array, information: Array, turning: Array, first: int, last: int
+    ) -> Array:
+        returned = centre[first] @ back[last]
+        return carried(before, after, information, turning.copy(), returned)
+
+    def update(
+        state: Array,
+        information: Array,
+        k: int,
+        measured: Array,
+        weight: Array,
+        gate: bool,
+        limits: tuple[int, float],
+    ) -> Array:
+        spin = float(known.leader.rate[2 * k])
+        seen = measured, weight
+        return updated(state, information, camera, spin, *seen, gate, limits)
+
+    return Frames(carry, update, covariances)
 
 
 def _compiled(

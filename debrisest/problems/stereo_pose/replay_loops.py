@@ -7,9 +7,10 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude.rotation_loops import matrix_of
+from debrisest.attitude.vector_loops import Vector, applied, applied_back, cross, vector
 from debrisest.compiled import compiled
-
-Vector = tuple[float, float, float]
+from debrisest.linear_algebra_loops import mirror
+from debrisest.problems.stereo_pose.point_loops import add_row, rows_of_point
 
 
 @compiled
@@ -46,8 +47,8 @@ def point_sums(
             joint[:], total[:] = 0.0, 0.0
             for point in range(points):
                 body = state[15 + 3 * point : 18 + 3 * point]
-                arm = _applied(turn, body[0], body[1], body[2])
-                _rows(state, arm, camera, rows, shown, by)
+                arm = applied(turn, vector(body))
+                rows_of_point(state, arm, camera, rows, shown, by)
                 square[:], pull[:] = 0.0, 0.0
                 for i in range(each):
                     m = each * point + i
@@ -56,68 +57,19 @@ def point_sums(
                     left *= weight[run, k, m]
                     cost[run] += left * left
                     flows = 4 <= rows[i] < 8
-                    _add_row(by[i], weight[run, k, m] / noise[m], left, flows, square, pull)
+                    add_row(by[i], weight[run, k, m] / noise[m], left, flows, square, pull)
                 first = 14 + 3 * point
                 told = _add_point(square, pull, arm, rate, by_arm, joint, total)
                 _to_body(turn, by_arm, joint[:, first - 2 : first + 1])
-                told = _applied(turn.T, told[0], told[1], told[2])
+                told = applied_back(turn, told)
                 for a in range(3):
                     gradient[run, first + a] += told[a]
                     for b in range(3):
                         information[run, first + a, first + b] += by_arm[12 + a, b]
             at = turning[run, k], centre[k]
             _add_motion(joint, total, *at, moved, information[run], gradient[run])
-        _mirror(information[run])
+        mirror(information[run])
     return residual, information, gradient, cost
-
-
-@compiled
-def _mirror(square: Array) -> None:
-    """Write what is below the diagonal from what is above it."""
-    for a in range(len(square)):
-        for b in range(a):
-            square[a, b] = square[b, a]
-
-
-@compiled
-def _add_row(by: Array, scale: float, left: float, flows: bool, square: Array, pull: Array) -> None:
-    """Add a row's squares above the diagonal; one that does not flow depends on the place alone."""
-    for a in range(6 if flows else 3):
-        scaled = by[a] * scale
-        pull[a] += scaled * left
-        for b in range(a, 6 if flows else 3):
-            square[a, b] += scaled * (by[b] * scale)
-
-
-@compiled
-def _rows(
-    state: Array,
-    arm: Vector,
-    camera: tuple[Array, float],
-    rows: IntArray,
-    shown: Array,
-    by: Array,
-) -> None:
-    """Write what a point shows (r,), and its derivative (r, 6) by its place and velocity."""
-    axes, baseline = camera
-    moved = _cross((state[6], state[7], state[8]), arm)
-    point = _applied(axes, state[0] + arm[0], state[1] + arm[1], state[2] + arm[2])
-    velocity = _applied(axes, state[3] + moved[0], state[4] + moved[1], state[5] + moved[2])
-    near = 1.0 / point[1]
-    recede = velocity[1] * near
-    for i in range(len(rows)):
-        row, across = rows[i], 2 * (rows[i] % 2)
-        slope = (point[across] - (baseline if row % 4 == 2 else 0.0)) * near
-        side, ahead = near, -slope * near
-        if row < 4:
-            shown[i] = slope
-        elif row < 8:
-            shown[i] = (velocity[across] - slope * velocity[1]) * near
-            by[i, 3], by[i, 4], by[i, 5] = _row(axes, across, near, -slope * near)
-            side, ahead = -recede * near, (slope * recede - shown[i]) * near
-        else:
-            shown[i], side, ahead = -baseline * near, 0.0, baseline * near * near
-        by[i, 0], by[i, 1], by[i, 2] = _row(axes, across, side, ahead)
 
 
 @compiled
@@ -140,7 +92,7 @@ def _add_point(
             square[i, j] = square[j, i]
     for i in range(6):
         flow = square[i, 3], square[i, 4], square[i, 5]
-        turned, spun = _cross(flow, rate), _cross(arm, flow)
+        turned, spun = cross(flow, rate), cross(arm, flow)
         for j in range(3):
             by_arm[i, j] = square[i, j] + turned[j]
             whole[i, 6 + j] += spun[j]
@@ -148,16 +100,16 @@ def _add_point(
             whole[i, j] += square[i, j]
     for j in range(3):
         flow = by_arm[3, j], by_arm[4, j], by_arm[5, j]
-        turned, spun = _cross(flow, rate), _cross(arm, flow)
+        turned, spun = cross(flow, rate), cross(arm, flow)
         of_arm = by_arm[0, j] + turned[0], by_arm[1, j] + turned[1], by_arm[2, j] + turned[2]
-        attitude = _cross(arm, of_arm)
+        attitude = cross(arm, of_arm)
         for i in range(3):
             by_arm[6 + i, j], by_arm[9 + i, j], by_arm[12 + i, j] = spun[i], attitude[i], of_arm[i]
     _add_turns(square, by_arm, arm, whole)
     flow = pull[3], pull[4], pull[5]
-    turned, spun = _cross(flow, rate), _cross(arm, flow)
+    turned, spun = cross(flow, rate), cross(arm, flow)
     of_arm = pull[0] + turned[0], pull[1] + turned[1], pull[2] + turned[2]
-    attitude = _cross(arm, of_arm)
+    attitude = cross(arm, of_arm)
     for i in range(3):
         total[i] += pull[i]
         total[3 + i] += pull[3 + i]
@@ -169,15 +121,15 @@ def _add_point(
 @compiled
 def _add_turns(square: Array, by_arm: Array, arm: Vector, whole: Array) -> None:
     """Add what rate and attitude tell by themselves, and the attitude with all."""
-    x = _cross(arm, (square[3, 3], square[4, 3], square[5, 3]))
-    y = _cross(arm, (square[3, 4], square[4, 4], square[5, 4]))
-    z = _cross(arm, (square[3, 5], square[4, 5], square[5, 5]))
+    x = cross(arm, (square[3, 3], square[4, 3], square[5, 3]))
+    y = cross(arm, (square[3, 4], square[4, 4], square[5, 4]))
+    z = cross(arm, (square[3, 5], square[4, 5], square[5, 5]))
     for i in range(3):
-        spun = _cross(arm, (x[i], y[i], z[i]))
+        spun = cross(arm, (x[i], y[i], z[i]))
         for j in range(3):
             whole[6 + i, 6 + j] += spun[j]
     for i in range(12):
-        attitude = _cross(arm, (by_arm[i, 0], by_arm[i, 1], by_arm[i, 2]))
+        attitude = cross(arm, (by_arm[i, 0], by_arm[i, 1], by_arm[i, 2]))
         for j in range(3):
             whole[i, 9 + j] += attitude[j]
 
@@ -189,11 +141,11 @@ def _to_body(turn: Array, by_arm: Array, own: Array) -> None:
     That takes the place of what the arm tells by itself, the last of ``by_arm (15, 3)``.
     """
     for i in range(15):
-        told = _applied(turn.T, by_arm[i, 0], by_arm[i, 1], by_arm[i, 2])
+        told = applied_back(turn, (by_arm[i, 0], by_arm[i, 1], by_arm[i, 2]))
         place = own[i] if i < 12 else by_arm[i]
         place[0], place[1], place[2] = told
     for j in range(3):
-        told = _applied(turn.T, by_arm[12, j], by_arm[13, j], by_arm[14, j])
+        told = applied_back(turn, (by_arm[12, j], by_arm[13, j], by_arm[14, j]))
         by_arm[12, j], by_arm[13, j], by_arm[14, j] = told
 
 
@@ -232,27 +184,3 @@ def _add_motion(
                 information[a, 6 + b] += moved[a, 6 + c] * turning[c, b]
         for b in range(12, joint.shape[1]):
             information[a, 2 + b] += moved[a, b]
-
-
-@compiled
-def _applied(matrix: Array, x: float, y: float, z: float) -> Vector:
-    return (
-        matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2] * z,
-        matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2] * z,
-        matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2] * z,
-    )
-
-
-@compiled
-def _row(axes: Array, across: int, side: float, ahead: float) -> Vector:
-    """A vector in the leader's axes, of its components across and ahead in a camera's."""
-    return (
-        side * axes[across, 0] + ahead * axes[1, 0],
-        side * axes[across, 1] + ahead * axes[1, 1],
-        side * axes[across, 2] + ahead * axes[1, 2],
-    )
-
-
-@compiled
-def _cross(u: Vector, v: Vector) -> Vector:
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
