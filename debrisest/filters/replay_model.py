@@ -111,9 +111,8 @@ class ReplayModel(NamedTuple):
     point_rows: Callable[[Array, Array, int, IntArray], PointRows] | None = None
     """The same as `rows`, for a model whose rows depend on few errors each."""
     sums: Callable[[Array, Array, int, IntArray, Array, Array], tuple[Array, ...]] | None = None
-    """(what `rows` takes, normalised measurements (run, epoch, m), weights) -> normalised residuals
-    (run, epoch, m), their information (run, n_e, n_e), gradient (run, n_e) and cost (run,), for a
-    model that has them for less without derivatives."""
+    """(what `rows` takes, normalised measurements (run, epoch, m), weights) -> information
+    (run, n_e, n_e), gradient (run, n_e) and cost (run,), for a model that has them for less."""
     course: Callable[[Array, int], tuple[Array, Array]] | None = None
     """(state at epoch 0, last) -> states (run, epoch, n) and measurements (run, epoch, m) up to
     epoch `last`, for a model that has them for less without derivatives."""

@@ -8,7 +8,7 @@ from debrisest.arrays import Array, IntArray
 from debrisest.filters import weights
 from debrisest.filters.linear_algebra import inverse_of_some_rows, scaled_inverse, scaled_solve
 from debrisest.filters.replay.gauss_newton import Solution
-from debrisest.filters.replay.measured_arc import MeasuredArc, sums
+from debrisest.filters.replay.measured_arc import MeasuredArc, residuals, sums
 from debrisest.filters.replay_model import ReplayModel
 
 _ITERATIONS, _CONVERGED = 3, 1e-3
@@ -76,7 +76,7 @@ def update(
             spread = scaled_inverse(predicted.information)[:, None]
             rows /= model.sigma[:, None]
             arc.weight[:, frame] *= weights.innovation_gate(residual, rows, spread)
-        _, *terms = sums(part, place, arc.measured[runs, frame], arc.weight[runs, frame])
+        terms = sums(part, place, arc.measured[runs, frame], arc.weight[runs, frame])
         to_plain = np.swapaxes(back, -1, -2)
         total = predicted.information[runs] + to_plain @ terms[0] @ back
         offset = part.difference(predicted.state[runs], at)
@@ -105,12 +105,12 @@ def _frame(arc: MeasuredArc, k: int, nis: Array) -> Frame:
     return Frame(nis, used, arc.seen[:, k].sum(-1) - used)
 
 
-def first_frame(arc: MeasuredArc, solution: Solution, k: int) -> Frame:
+def first_frame(model: ReplayModel, arc: MeasuredArc, solution: Solution, k: int) -> Frame:
     """Figures of the first measured epoch by its replay, since no update comes so far at once.
 
     What would be rejected there does not count, whatever its weight.
     """
-    residual = solution.at.residual[:, k]
+    residual = residuals(model, arc, model.shown(solution.at.state, k)[1])[:, k]
     used = arc.seen[:, k] & ((arc.weight[:, k] == 1.0) | (weights.hard(residual) > 0.0))
     weight = np.where(used, 1.0 - arc.weight[:, k] ** 2, -(arc.weight[:, k] ** 2))
     nis = solution.cost + (weight * residual**2).sum(-1)

@@ -89,6 +89,8 @@ def gauss_newton(
     promises is below `tolerance`. What is `held` adds to the cost by as much as it is missed.
     """
 
+    arc = arc.until(last)
+
     def place(runs: IntArray, state: Array) -> Linearization:
         part = model.of(runs)
         if held is None:

@@ -201,7 +201,7 @@ def _filter(
             figures |= {"cost": solution.cost, "rival_excess": rival.gap}
             writer.conclude(_status(solution))
             if k == schedule[0]:
-                figures |= first_frame(arc, solution, k)._asdict()
+                figures |= first_frame(model, arc, solution, k)._asdict()
             if reference is not None and writer.keeps(k):
                 figures["cost_of_truth"] = reference.cost(arc.weight, k)
         going = writer.record(k, belief.state, covariance_of(model, belief), figures)

@@ -39,7 +39,7 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
     """
     points = known.points
     centre = transitions(known.leader, known.steps)
-    back: Array = np.linalg.inv(centre)
+    back = np.asarray(np.linalg.inv(centre), dtype=np.float64)
 
     def at_epochs(states: Array, turning: Array, first: int, epochs: IntArray) -> PointRows:
         return point_rows(known, states, turning, centre[epochs] @ back[first], epochs)
@@ -117,22 +117,25 @@ def _compiled(
     weight: Array,
 ) -> tuple[Array, ...]:
     """Normal equations of what `point_rows` gives of ``at``, by compiled loops."""
+    from debrisest.problems.stereo_pose.lane_loops import LANES
     from debrisest.problems.stereo_pose.replay_loops import point_sums
 
     count = known.points * len(known.rows)
     camera = np.eye(3) if known.to_camera is None else known.to_camera.copy(), known.baseline
-    states, turning, centre = (np.ascontiguousarray(part) for part in at[:3])
-    points = (np.ascontiguousarray(part[..., :count]) for part in (measured, weight))
-    found = point_sums(states, turning, centre, camera, known.rows, sigma[:count], *points)
+    states, turning = (np.ascontiguousarray(part) for part in at[:2])
+    centre = np.zeros((6, 6, len(at[2]) + LANES))
+    centre[..., :-LANES] = (np.kron(np.eye(2), camera[0]) @ at[2]).T
+    seen = np.ascontiguousarray(measured), np.ascontiguousarray(weight)
+    found = point_sums(states, turning, centre, camera, known.rows, sigma[:count], *seen)
     if not known.shown.acceleration:
         return found
     shown, by_rest = _acceleration_rows(known, states, turning, at[-1])
     left = measured[..., count:] - shown / sigma[count:]
     rest = normal_equations(by_rest / sigma[count:, None], left, weight[..., count:])
-    residual, information, gradient, cost = found
+    information, gradient, cost = found
     information[:, :14, :14] += rest[0]
     gradient[:, :14] += rest[1]
-    return np.concatenate([residual, left], -1), information, gradient, cost + rest[2]
+    return information, gradient, cost + rest[2]
 
 
 def _course(known: StereoGeometry, state: Array, last: int) -> tuple[Array, Array]:
