@@ -57,6 +57,8 @@ class Frames(NamedTuple):
     update: Callable[[Array, Array, int, Array, Array, bool, tuple[int, float]], Array]
     """(states, information, epoch, normalised measurements (run, m), weights, whether with a gate,
     most iterations and when they end) -> NIS (run,); the others are updated in place."""
+    move: Callable[[Array, Array], Array]
+    """(states, steps in plain errors) -> states, by way of their charts and of `retract`."""
     covariance: Callable[[Array, Array], Array]
     """(states, information in their charts) -> plain covariances (run, n_e, n_e)."""
 

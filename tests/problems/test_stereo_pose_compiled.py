@@ -6,6 +6,7 @@ import pytest
 from debrisest import compiled
 from debrisest.dynamics.torque_free_sensitivity import torque_free_arc
 from debrisest.filters.replay.frame_update import Belief, covariance_of, predict, update
+from debrisest.filters.replay.gauss_newton import move
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.problems.stereo_pose.model import Shown
 
@@ -82,7 +83,8 @@ def test_a_frame_of_the_filter_is_the_same(monkeypatch, experiment, shown, gate)
         belief = Belief(at.last_state, 1e-2 * at.information)
         belief, frame = update(test.model, predict(test.model, belief, 12), arc, 12, gate)
         assert frame.rejected[0] == 2 * gate
-        return *belief, frame.nis, covariance_of(test.model, belief), arc.weight
+        moved = move(test.model, belief.state, np.linspace(-2.0, 1.5, 87).reshape(3, 29))
+        return *belief, frame.nis, covariance_of(test.model, belief), arc.weight, moved
 
     same(*both(monkeypatch, found), 1e-9)
 

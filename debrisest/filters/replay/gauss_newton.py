@@ -111,6 +111,8 @@ def gauss_newton(
 
 def move(model: ReplayModel, state: Array, step: Array) -> Array:
     """State after a step in plain errors, taken in the state's own chart."""
+    if model.frames is not None:
+        return model.frames.move(state, step)
     return model.retract(state, (model.chart(state) @ step[..., None])[..., 0])
 
 

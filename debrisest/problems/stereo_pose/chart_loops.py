@@ -6,10 +6,12 @@ at once, and of what is not zero alone.
 
 import math
 
+import numpy as np
+
 from debrisest.arrays import Array
 from debrisest.attitude.vector_loops import Vector, applied, applied_back, cross, vector
 from debrisest.compiled import compiled
-from debrisest.dynamics.inertia_ratios_loops import moved
+from debrisest.dynamics.inertia_ratios_loops import moved as ratios_moved
 
 
 @compiled
@@ -140,6 +142,39 @@ def to_plain(rate: Vector, turn: Array, arms: Array, matrix: Array) -> None:
 
 
 @compiled
+def moved(state: Array, step: Array) -> Array:
+    """Return states (run, n) after steps (run, n_e) in plain errors, as `gauss_newton.move`."""
+    result, points = state.copy(), (state.shape[1] - 15) // 3
+    turn, arms, error = np.empty((3, 3)), np.empty((points + 1, 3)), np.empty(step.shape[1])
+    for run in range(len(state)):
+        place(state[run], turn, arms)
+        to_own(vector(state[run, 6:]), turn, arms, step[run], error)
+        retract(result[run], error, turn, arms)
+    return result
+
+
+@compiled
+def to_own(rate: Vector, turn: Array, arms: Array, step: Array, error: Array) -> None:
+    """Write a plain error (n_e,) in the chart of its own: ``G d`` of `chart.robocentric`."""
+    points, turned = len(arms) - 1, vector(step[9:])
+    error[:14] = step[:14]
+    mean = cross(turned, vector(arms[points]))
+    for i in range(points):
+        body = applied(turn, vector(step[14 + 3 * i :]))
+        lever = cross(turned, vector(arms[i]))
+        mean = (
+            mean[0] + body[0] / points,
+            mean[1] + body[1] / points,
+            mean[2] + body[2] / points,
+        )
+        for c in range(3):
+            error[14 + 3 * i + c] = step[c] + lever[c] + body[c]
+    flow, faster = cross(rate, mean), cross(vector(step[6:]), vector(arms[points]))
+    for c in range(3):
+        error[3 + c] += flow[c] + faster[c]
+
+
+@compiled
 def retract(state: Array, error: Array, turn: Array, arms: Array) -> None:
     """Replace a state (n,), whose `place` is given and spoilt, as `chart.retract`."""
     points = len(arms) - 1
@@ -157,7 +192,7 @@ def retract(state: Array, error: Array, turn: Array, arms: Array) -> None:
     for c in range(3):
         state[3 + c] -= flow[c]
     _turn_by((error[9], error[10], error[11]), state[9:13])
-    state[13], state[14] = moved(state[13], state[14], error[12], error[13])
+    state[13], state[14] = ratios_moved(state[13], state[14], error[12], error[13])
     axes(state[9:13], turn)
     for i in range(points):
         body = applied_back(turn, vector(arms[i]))

@@ -82,6 +82,7 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
 def _frames(known: StereoGeometry, sigma: Array, centre: Array, back: Array) -> Frames:
     """The filter between the anchors, by compiled loops."""
     from debrisest.problems.stereo_pose.carry_loops import carried
+    from debrisest.problems.stereo_pose.chart_loops import moved
     from debrisest.problems.stereo_pose.frame_loops import covariances, updated
 
     axes = np.eye(3) if known.to_camera is None else known.to_camera.copy()
@@ -106,7 +107,7 @@ def _frames(known: StereoGeometry, sigma: Array, centre: Array, back: Array) -> 
         seen = measured, weight
         return updated(state, information, camera, spin, *seen, gate, limits)
 
-    return Frames(carry, update, covariances)
+    return Frames(carry, update, moved, covariances)
 
 
 def _compiled(
