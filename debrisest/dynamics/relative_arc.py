@@ -12,8 +12,9 @@ from debrisest import compiled
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import matrix_of_cross
+from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import Leader
-from debrisest.dynamics.torque_free_sensitivity import torque_free_arc
+from debrisest.dynamics.torque_free_sensitivity import parts_of_steps, torque_free_arc
 
 _TURNING = 8
 """Errors that the rotation depends on: rate, attitude, ratios."""
@@ -31,7 +32,7 @@ def rotation_arc(
     spin = np.array([0.0, 0.0, 1.0]) * leader.rate[:, None]
     to_body = np.swapaxes(quaternion.to_matrix(q_lt), -1, -2)
     total = rate_l + spin[0]
-    arc = torque_free_arc(times, q_lt, (to_body @ total[..., None])[..., 0], k)
+    rate_b = (to_body @ total[..., None])[..., 0]
     half = 0.5 * (leader.anomaly - leader.anomaly[0])
     by_start = np.zeros((len(k), 1, 5, _TURNING))
     by_start[:, 0, :3, :3] = to_body
@@ -41,7 +42,11 @@ def rotation_arc(
         from debrisest.dynamics.relative_arc_loops import relative
 
         orbit = np.stack([np.cos(half), np.sin(half), leader.rate], axis=-1)
-        return relative(*arc[:2], arc[2:], by_start[:, 0], orbit)
+        by_ratios = inertia_ratios.acceleration_by_ratios(np.ones((len(k), 3)), k)
+        body = inertia_ratios.moments(k), inertia_ratios.slopes(k), by_ratios
+        parts = parts_of_steps(times, rate_b)
+        return relative(times, (q_lt, rate_b), body, parts, by_start[:, 0], orbit)
+    arc = torque_free_arc(times, q_lt, rate_b, k)
     zero = np.zeros_like(half)
     q_li = np.stack([np.cos(half), zero, zero, -np.sin(half)], axis=-1)
     q = quaternion.multiply(q_li, arc.q_ib)
