@@ -7,6 +7,7 @@ Equations are those of `relative_arc`, where their words are; epochs lie side by
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
+from debrisest.attitude.vector_loops import Vector
 from debrisest.compiled import compiled
 from debrisest.dynamics.torque_free_sensitivity_loops import (
     LANES,
@@ -81,22 +82,12 @@ def _seen(
     axes = np.zeros(2 * LANES)
     for k in range(count):
         c, s = leader[k, 0], leader[k, 1]
-        w, x, y, z = q_ib[0, k], q_ib[1, k], q_ib[2, k], q_ib[3, k]
-        w, x, y, z = c * w + s * z, c * x + s * y, c * y - s * x, c * z - s * w
-        q[k, 0], q[k, 1], q[k, 2], q[k, 3] = w, x, y, z
         axes[k], axes[_Y + k] = c * c - s * s, 2.0 * c * s
-        of = (
-            (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
-            (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
-            (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
-        )
+        of = _turned(q_ib[:, k], rate_b[:, k], leader[k], q[k], rate[k])
         for i in range(3):
-            a, b, c = of[i]
-            turn[LANES * (3 * i) + k], turn[LANES * (3 * i + 1) + k] = a, b
-            turn[LANES * (3 * i + 2) + k] = c
-            whole[LANES * i + k] = a * rate_b[0, k] + b * rate_b[1, k] + c * rate_b[2, k]
-            rate[k, i] = whole[LANES * i + k]
-        rate[k, 2] -= leader[k, 2]
+            for j in range(3):
+                turn[LANES * (3 * i + j) + k] = of[i][j]
+            whole[LANES * i + k] = rate[k, i] + (leader[k, 2] if i == 2 else 0.0)
     for b in range(8):
         by = to_start[0, b], to_start[1, b], to_start[2, b], to_start[3, b], to_start[4, b]
         own = 1.0 * (b == 3), 1.0 * (b == 4), 1.0 * (b == 5)
@@ -104,6 +95,40 @@ def _seen(
         for c in range(6):
             for k in range(count):
                 sensitivity[k, c, b] = found[LANES * c + k]
+
+
+@compiled
+def motion_seen(
+    times: Array, start: tuple[Array, Array], moments: Array, leader: Array
+) -> tuple[Array, Array]:
+    """Return attitudes and rates as `relative`, without derivatives."""
+    runs, epochs = len(moments), len(times)
+    q, rate = np.empty((runs, epochs, 4)), np.empty((runs, epochs, 3))
+    for run in range(runs):
+        q_ib, rate_b = motion(times - times[0], start[0][run], start[1][run], moments[run])
+        for t in range(epochs):
+            _turned(q_ib[:, t], rate_b[:, t], leader[t], q[run, t], rate[run, t])
+    return q, rate
+
+
+@compiled
+def _turned(
+    q_ib: Array, rate_b: Array, leader: Array, q: Array, rate: Array
+) -> tuple[Vector, Vector, Vector]:
+    """Write attitude and rate that are seen from the leader; return the axes of that attitude."""
+    c, s = leader[0], leader[1]
+    w, x, y, z = q_ib[0], q_ib[1], q_ib[2], q_ib[3]
+    w, x, y, z = c * w + s * z, c * x + s * y, c * y - s * x, c * z - s * w
+    q[0], q[1], q[2], q[3] = w, x, y, z
+    turn = (
+        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+    )
+    for i in range(3):
+        rate[i] = turn[i][0] * rate_b[0] + turn[i][1] * rate_b[1] + turn[i][2] * rate_b[2]
+    rate[2] -= leader[2]
+    return turn
 
 
 @compiled

@@ -24,6 +24,7 @@ from debrisest.problems.stereo_pose.model import (
     points_in_view,
     shown_by_points,
     shown_of_points,
+    target_acceleration,
 )
 from debrisest.problems.stereo_pose.start import first_guess
 
@@ -85,8 +86,7 @@ def _frames(known: StereoGeometry, sigma: Array, centre: Array, back: Array) -> 
     from debrisest.problems.stereo_pose.chart_loops import moved
     from debrisest.problems.stereo_pose.frame_loops import covariances, updated
 
-    axes = np.eye(3) if known.to_camera is None else known.to_camera.copy()
-    camera = axes, known.baseline, known.rows, sigma
+    camera = *_camera(known), known.rows, sigma
 
     def carry(
         before: Array, after: Array, information: Array, turning: Array, first: int, last: int
@@ -122,7 +122,7 @@ def _compiled(
     from debrisest.problems.stereo_pose.replay_loops import point_sums
 
     count = known.points * len(known.rows)
-    camera = np.eye(3) if known.to_camera is None else known.to_camera.copy(), known.baseline
+    camera = _camera(known)
     states, turning = (np.ascontiguousarray(part) for part in at[:2])
     centre = np.zeros((6, 6, len(at[2]) + LANES))
     centre[..., :-LANES] = (np.kron(np.eye(2), camera[0]) @ at[2]).T
@@ -140,8 +140,20 @@ def _compiled(
 
 
 def _course(known: StereoGeometry, state: Array, last: int) -> tuple[Array, Array]:
-    states = chart.course(known, state, last)
-    return states, measurement(known, states, np.arange(last + 1))
+    states, epochs = chart.course(known, state, last), np.arange(last + 1)
+    if not compiled.available():
+        return states, measurement(known, states, epochs)
+    from debrisest.problems.stereo_pose.replay_loops import points_shown
+
+    shown = points_shown(states, _camera(known), known.rows)
+    if known.shown.acceleration:
+        shown = np.concatenate([shown, target_acceleration(known, states, epochs)], -1)
+    return states, shown
+
+
+def _camera(known: StereoGeometry) -> tuple[Array, float]:
+    """The cameras' axes (3, 3) in the leader's, and the baseline."""
+    return np.eye(3) if known.to_camera is None else known.to_camera.copy(), known.baseline
 
 
 def _dense(rows: PointRows) -> tuple[Array, Array]:

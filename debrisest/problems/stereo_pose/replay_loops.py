@@ -58,7 +58,8 @@ def point_sums(
         for first in range(0, epochs, LANES):
             count = min(LANES, epochs - first)
             width = 8 * ((count + 7) // 8)
-            _gather(states[run], turning[run], centre, camera[0], first, count, width, body, way)
+            _gather(states[run], camera[0], first, count, width, body)
+            _gather_ways(turning[run], centre, camera[0], first, count, width, way)
             joint[:], force[:] = 0.0, 0.0
             for i in range(points):
                 place = states[run, first, 15 + 3 * i : 18 + 3 * i]
@@ -80,22 +81,29 @@ def point_sums(
 
 
 @compiled
-def _gather(
-    states: Array,
-    turning: Array,
-    centre: Array,
-    axes: Array,
-    first: int,
-    count: int,
-    width: int,
-    body: Array,
-    way: Array,
-) -> None:
-    """Write the lanes of `lane_loops` of some epochs, and the ways (84) there from the start.
+def points_shown(states: Array, camera: tuple[Array, float], rows: IntArray) -> Array:
+    """Return what the cameras show of the points at all epochs, (run, epoch, N r)."""
+    (runs, epochs), points = states.shape[:2], (states.shape[2] - 15) // 3
+    each = len(rows)
+    result, body = np.empty((runs, epochs, points * each)), np.empty(18 * LANES)
+    arm, view, shown = np.empty(3 * LANES), np.empty(8 * LANES), np.empty(9 * LANES)
+    for run in range(runs):
+        for first in range(0, epochs, LANES):
+            count = min(LANES, epochs - first)
+            width = 8 * ((count + 7) // 8)
+            _gather(states[run], camera[0], first, count, width, body)
+            for i in range(points):
+                place = states[run, first, 15 + 3 * i : 18 + 3 * i]
+                shown_of(body, place, camera[1], width, arm, view, shown)
+                for k in range(count):
+                    for r in range(each):
+                        result[run, first + k, each * i + r] = shown[LANES * rows[r] + k]
+    return result
 
-    These are ``centre (6, 6)`` and ``turning (6, 8)``, by rows. Lanes without an epoch have the
-    last one.
-    """
+
+@compiled
+def _gather(states: Array, axes: Array, first: int, count: int, width: int, body: Array) -> None:
+    """Write the body's lanes (`lane_loops`) of some epochs; those without one have the last."""
     q = np.empty(4 * LANES)
     for k in range(width):
         epoch = first + min(k, count - 1)
@@ -103,13 +111,6 @@ def _gather(
             body[LANES * c + k] = states[epoch, c]
         for c in range(4):
             q[LANES * c + k] = states[epoch, 9 + c]
-        for c in range(6):
-            for a in range(8):
-                way[LANES * (_TURNS + 6 * a + c) + k] = turning[epoch, c, a]
-    for a in range(6):
-        for c in range(6):
-            for k in range(width):
-                way[LANES * (6 * a + c) + k] = centre[a, c, first + k]
     for k in range(width):
         w, x, y, z = q[k], q[LANES + k], q[2 * LANES + k], q[3 * LANES + k]
         body[9 * LANES + k], body[10 * LANES + k] = (
@@ -125,6 +126,22 @@ def _gather(
         body[17 * LANES + k] = 1.0 - 2.0 * (x * x + y * y)
     for c in range(0, 18, 3):
         _turn(axes, body, c, width)
+
+
+@compiled
+def _gather_ways(
+    turning: Array, centre: Array, axes: Array, first: int, count: int, width: int, way: Array
+) -> None:
+    """Write the ways (84) of some epochs from the start: ``centre`` and ``turning``, by columns."""
+    for k in range(width):
+        for c in range(6):
+            for a in range(8):
+                epoch = first + min(k, count - 1)
+                way[LANES * (_TURNS + 6 * a + c) + k] = turning[epoch, c, a]
+    for a in range(6):
+        for c in range(6):
+            for k in range(width):
+                way[LANES * (6 * a + c) + k] = centre[a, c, first + k]
     for c in range(_TURNS, 84, 3):
         _turn(axes, way, c, width)
 
