@@ -78,6 +78,10 @@ def retract(state: Array, error: Array, points: int) -> Array:
 
 def excess(state: Array, step: Array) -> tuple[Array, Array]:
     """Derivative ``(..., 2, n_e)`` of two slopes of the inertia, and what `retract` cuts."""
+    if compiled.available():
+        from debrisest.problems.stereo_pose.chart_loops import excess as excess_compiled
+
+        return excess_compiled(state, step)
     rows = np.zeros((*step.shape[:-1], 2, step.shape[-1]))
     rows[..., K_ERROR] = inertia_ratios.slopes_by_ratios(state[..., K])
     return rows, inertia_ratios.excess(state[..., K], step[..., K_ERROR])

@@ -11,6 +11,8 @@ import numpy as np
 from debrisest.arrays import Array
 from debrisest.attitude.vector_loops import Vector, applied, applied_back, cross, vector
 from debrisest.compiled import compiled
+from debrisest.dynamics.inertia_ratios import NOT_CUT
+from debrisest.dynamics.inertia_ratios_loops import by_ratios, reached, slopes
 from debrisest.dynamics.inertia_ratios_loops import moved as ratios_moved
 
 
@@ -139,6 +141,22 @@ def to_plain(rate: Vector, turn: Array, arms: Array, matrix: Array) -> None:
             matrix[f, b] = d00 * x + d10 * y + d20 * z
             matrix[f + 1, b] = d01 * x + d11 * y + d21 * z
             matrix[f + 2, b] = d02 * x + d12 * y + d22 * z
+
+
+@compiled
+def excess(state: Array, step: Array) -> tuple[Array, Array]:
+    """Return derivatives (run, 2, n_e) and what is cut (run, 2), as `chart.excess`."""
+    rows, cut = np.zeros((len(step), 2, step.shape[1])), np.empty((len(step), 2))
+    for run in range(len(step)):
+        by, at = by_ratios(state[run, 13], state[run, 14]), slopes(state[run, 13], state[run, 14])
+        for i in range(2):
+            rise = 0.0
+            for j in range(2):
+                rows[run, i, 12 + j] = by[i][j]
+                rise += by[i][j] * step[run, 12 + j]
+            off = reached(at[2 * i], rise) - at[2 * i] - rise
+            cut[run, i] = off if abs(off) > NOT_CUT else 0.0
+    return rows, cut
 
 
 @compiled
