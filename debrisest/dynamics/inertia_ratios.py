@@ -19,7 +19,7 @@ LARGEST_SLOPE = 0.97
 LARGEST_CHANGE = 0.5
 """A single correction changes a slope by no more than this."""
 LARGEST_START_SLOPE = 0.95
-_NOT_CUT = 1e-12
+NOT_CUT = 1e-12
 
 
 def ratios(moments: Array) -> Array:
@@ -99,7 +99,7 @@ def excess(k: Array, change: Array) -> Array:
     """By how much `move` cuts a correction ``(..., 2)``, in sx and sz: what is made minus asked."""
     rise = (slopes_by_ratios(k) @ change[..., None])[..., 0]
     cut = _cut(slopes(k)[..., ::2], rise)
-    return np.where(np.abs(cut - rise) > _NOT_CUT, cut - rise, 0.0)
+    return np.where(np.abs(cut - rise) > NOT_CUT, cut - rise, 0.0)
 
 
 def slopes_by_ratios(k: Array) -> Array:

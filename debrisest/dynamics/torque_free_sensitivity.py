@@ -13,8 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from debrisest import compiled
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.substeps import substeps
@@ -43,23 +42,21 @@ def torque_free_arc(times: Array, q0: Array, rate0: Array, k: Array) -> Arc:
     ``q0 (run, 4)``, ``rate0 (run, 3)``, rad/s, in principal axes, ``k (run, 2)``. Of a fast body
     the steps of the variational equations are divided.
     """
-    longest = np.abs(np.diff(times)).max(initial=0.0)
-    count = substeps(np.linalg.norm(rate0, axis=-1), longest)
+    count = parts_of_steps(times, rate0)
     runs, epochs = len(q0), len(times)
     result = Arc(*(np.empty((runs, epochs, *shape)) for shape in ((4,), (3,), (3, _BY), (3, _BY))))
-    if compiled.available():
-        from debrisest.dynamics.torque_free_sensitivity_loops import arcs
-
-        of_body = inertia_ratios.moments(k), inertia_ratios.slopes(k)
-        by_ratios = inertia_ratios.acceleration_by_ratios(np.ones((runs, 3)), k)
-        arcs(times, (q0, rate0), (*of_body, by_ratios), count, result)
-        return result
     for parts in np.unique(count):
         chosen = np.flatnonzero(count == parts)
         found = _divided(times, q0[chosen], rate0[chosen], k[chosen], int(parts))
         for all_of, some in zip(result, found):
             all_of[chosen] = some
     return result
+
+
+def parts_of_steps(times: Array, rate0: Array) -> IntArray:
+    """Return in how many parts (run,) the longest step is divided, by the rate (run, 3), rad/s."""
+    longest = np.abs(np.diff(times)).max(initial=0.0)
+    return substeps(np.linalg.norm(rate0, axis=-1), longest)
 
 
 def _divided(times: Array, q0: Array, rate0: Array, k: Array, parts: int) -> Arc:

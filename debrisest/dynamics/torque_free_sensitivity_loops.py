@@ -1,123 +1,171 @@
-"""Arcs of torque-free rotation with their derivatives as plain loops, for `debrisest.compiled`.
+"""Derivatives of torque-free rotation over its steps as plain loops, for `debrisest.compiled`.
 
-Equations and scheme are those of `torque_free_sensitivity`, where their words are.
+Equations and scheme are those of `torque_free_sensitivity`, where their words are. `LANES` steps
+lie side by side in arrays, each number at a place that the compiler knows.
 """
-
-from typing import Any
 
 import numpy as np
 
-from debrisest.arrays import Array, IntArray
+from debrisest.arrays import Array
 from debrisest.attitude.rotation_loops import conjugate, product
+from debrisest.attitude.vector_loops import Vector, vector
 from debrisest.compiled import compiled
 from debrisest.dynamics.torque_free_loops import at, body_of
 
-_BY = 5
+LANES = 32
+_Y, _Z, _U, _V, _W, _P, _Q, _R = (LANES * c for c in range(1, 9))
 
 
 @compiled
-def arcs(
-    times: Array,
-    start: tuple[Array, Array],
-    body: tuple[Array, Array, Array],
-    count: IntArray,
-    result: Any,
-) -> None:
-    """Write a `torque_free_sensitivity.Arc` of all runs.
-
-    ``start`` is attitude (run, 4) and rate (run, 3); a body its moments (run, 3), slopes (run, 3)
-    and the derivatives (run, 3, 2) of its acceleration by the ratios over the products of rates;
-    ``count (run,)`` the parts of a step.
-    """
-    q_ib, rate_b, turn_by, rate_by = result
-    for run in range(len(count)):
-        parts = count[run]
-        fine = _divided(times, 2 * parts)
-        q, rate = _motion(fine, start[0][run], start[1][run], body[0][run])
-        for t in range(len(times)):
-            q_ib[run, t], rate_b[run, t] = q[2 * parts * t], rate[2 * parts * t]
-        by, turned = np.eye(3, _BY), np.zeros((3, _BY))
-        for t in range(len(times)):
-            turn_by[run, t], rate_by[run, t] = turned, by
-            for i in range(2 * parts * t, 2 * parts * (t + 1) * (t < len(times) - 1), 2):
-                step = fine[i + 2] - fine[i]
-                _step(step, q[i : i + 3], rate[i : i + 3], body[1][run], body[2][run], by, turned)
+def ends_and_middles(times: Array, parts: int) -> Array:
+    """Times since the first of the ends of the parts of all steps, then those of their middles."""
+    count = parts * (len(times) - 1)
+    result = np.empty(2 * count + 1)
+    for i in range(count):
+        t, part = i // parts, i % parts
+        step = times[t + 1] - times[t]
+        result[i] = times[t] - times[0] + part / parts * step
+        result[count + 1 + i] = times[t] - times[0] + (part + 0.5) / parts * step
+    result[count] = times[-1] - times[0]
+    return result
 
 
 @compiled
-def _divided(times: Array, parts: int) -> Array:
-    """Times since the first, and so many parts of each step."""
-    fine = np.zeros(parts * (len(times) - 1) + 1)
-    for i in range(len(fine) - 1):
-        t = i // parts
-        fine[i] = times[t] - times[0] + (i - parts * t) / parts * (times[t + 1] - times[t])
-    fine[-1] = times[-1] - times[0]
-    return fine
-
-
-@compiled
-def _motion(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[Array, Array]:
-    """Attitudes (time, 4) and rates (time, 3) by the closed form."""
+def motion(times: Array, q0: Array, rate0: Array, moments: Array) -> tuple[Array, Array]:
+    """Attitudes (4, time) and rates (3, time) by the closed form."""
     body = body_of(rate0, moments)
     order, count = body[-1], len(times)
     ordered, about = np.empty((3, count)), np.empty((4, count))
     at(times, body, ordered, about)
     axes = np.array([0, 1 + order[0], 1 + order[1], 1 + order[2]])
-    first, by = np.empty(4), np.empty((4, 4))
+    first = np.empty(4)
     first[axes] = about[:, 0] / np.sum(about[:, 0] ** 2)
     left = product(q0, conjugate(first))
-    for i in range(4):
-        by[:, i] = product(left, np.eye(4)[axes[i]])
-    q, rate = np.zeros((count, 4)), np.empty((count, 3))
-    for t in range(count):
+    q, rate = np.zeros((4, count)), np.empty((3, count))
+    for j in range(4):
+        by = product(left, np.eye(4)[axes[j]])
         for i in range(4):
-            for j in range(4):
-                q[t, i] += by[i, j] * about[j, t]
-        for i in range(3):
-            rate[t, order[i]] = ordered[i, t]
+            for t in range(count):
+                q[i, t] += by[i] * about[j, t]
+    for i in range(3):
+        rate[order[i]] = ordered[i]
     return q, rate
 
 
 @compiled
-def _step(
-    step: float, q: Array, rate: Array, slope: Array, by_ratios: Array, by: Array, turned: Array
+def derivatives(
+    times: Array, q: Array, rate: Array, first: int, slope: Array, by_ratios: Array, result: Array
 ) -> None:
-    """Carry the derivatives (3, 5) over a step, of whose ends and middle the motion is known."""
-    new, at_, change = by.copy(), by.copy(), np.empty((3, _BY))
-    for i in range(4):
-        part = (i + 1) // 2
-        _turn(q[part], at_, step / 6.0 * (1.0 if i % 3 == 0 else 2.0), turned)
-        _slopes(rate[part], slope, by_ratios, at_, change)
-        for a in range(3):
-            for b in range(_BY):
-                new[a, b] += step / 6.0 * (1.0 if i % 3 == 0 else 2.0) * change[a, b]
-                at_[a, b] = by[a, b] + step * (0.5 if i < 2 else 1.0) * change[a, b]
-    by[:] = new
+    """Write those of rate and turn after some steps by rate and ratios before, (2, 5, 3) lanes.
+
+    ``times``, ``q (4, time)``, ``rate (3, time)`` are those of ends and middles of all steps.
+    """
+    steps = len(times) // 2
+    count = min(LANES, steps - first)
+    width = 8 * ((count + 7) // 8)
+    step, turn, rates = np.zeros(LANES), np.empty(27 * LANES), np.zeros(9 * LANES)
+    for k in range(count):
+        step[k] = times[first + k + 1] - times[first + k]
+    for place in range(3):
+        w = np.zeros(4 * LANES)
+        begin = steps + 1 + first if place == 1 else first + place // 2
+        for c in range(4):
+            for k in range(count):
+                w[LANES * c + k] = q[c, begin + k]
+        for c in range(3):
+            for k in range(count):
+                rates[LANES * (3 * place + c) + k] = rate[c, begin + k]
+        _axes(w, width, turn[9 * LANES * place :])
+    for b in range(5):
+        start, forced = (1.0 * (b == 0), 1.0 * (b == 1), 1.0 * (b == 2)), (0.0, 0.0, 0.0)
+        if b > 2:
+            forced = by_ratios[0, b - 3], by_ratios[1, b - 3], by_ratios[2, b - 3]
+        column = result[3 * b * LANES :], result[(15 + 3 * b) * LANES :]
+        _column(step, rates, turn, vector(slope), start, forced, width, *column)
 
 
 @compiled
-def _slopes(rate: Array, slope: Array, by_ratios: Array, by: Array, change: Array) -> None:
+def _axes(q: Array, width: int, turn: Array) -> None:
+    """Write rotation matrices (9) of quaternions (4), by columns."""
+    for k in range(width):
+        w, x, y, z = q[k], q[_Y + k], q[_Z + k], q[_U + k]
+        turn[k], turn[_Y + k] = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)
+        turn[_Z + k], turn[_U + k] = 2.0 * (x * z - w * y), 2.0 * (x * y - w * z)
+        turn[_V + k], turn[_W + k] = 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)
+        turn[_P + k], turn[_Q + k] = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)
+        turn[_R + k] = 1.0 - 2.0 * (x * x + y * y)
+
+
+@compiled
+def _column(
+    step: Array,
+    rates: Array,
+    turn: Array,
+    slope: Vector,
+    start: Vector,
+    forced: Vector,
+    width: int,
+    by: Array,
+    turned: Array,
+) -> None:
+    """Write how rate and turn (3) at the ends of steps change with one number before them."""
+    for k in range(width):
+        h = step[k]
+        slope1 = _slope(rates, k, slope, start, forced)
+        at2 = _ahead(start, 0.5 * h, slope1)
+        slope2 = _slope(rates, _U + k, slope, at2, forced)
+        at3 = _ahead(start, 0.5 * h, slope2)
+        slope3 = _slope(rates, _U + k, slope, at3, forced)
+        at4 = _ahead(start, h, slope3)
+        slope4 = _slope(rates, _P + k, slope, at4, forced)
+        first, last = _turned(turn, k, start), _turned(turn, 18 * LANES + k, at4)
+        both = 2.0 * (at2[0] + at3[0]), 2.0 * (at2[1] + at3[1]), 2.0 * (at2[2] + at3[2])
+        middle = _turned(turn, 9 * LANES + k, both)
+        turned[k] = h / 6.0 * (first[0] + middle[0] + last[0])
+        turned[_Y + k] = h / 6.0 * (first[1] + middle[1] + last[1])
+        turned[_Z + k] = h / 6.0 * (first[2] + middle[2] + last[2])
+        a = slope1[0] + 2.0 * (slope2[0] + slope3[0]) + slope4[0]
+        b = slope1[1] + 2.0 * (slope2[1] + slope3[1]) + slope4[1]
+        c = slope1[2] + 2.0 * (slope2[2] + slope3[2]) + slope4[2]
+        by[k], by[_Y + k], by[_Z + k] = _ahead(start, h / 6.0, (a, b, c))
+
+
+@compiled
+def _slope(rates: Array, k: int, slope: Vector, v: Vector, forced: Vector) -> Vector:
+    x, y, z = rates[k], rates[_Y + k], rates[_Z + k]
+    return (
+        slope[0] * (z * v[1] + y * v[2]) + y * z * forced[0],
+        slope[1] * (x * v[2] + z * v[0]) + z * x * forced[1],
+        slope[2] * (y * v[0] + x * v[1]) + x * y * forced[2],
+    )
+
+
+@compiled
+def _ahead(v: Vector, step: float, slope: Vector) -> Vector:
+    return v[0] + step * slope[0], v[1] + step * slope[1], v[2] + step * slope[2]
+
+
+@compiled
+def _turned(turn: Array, k: int, v: Vector) -> Vector:
+    return (
+        turn[k] * v[0] + turn[_U + k] * v[1] + turn[_P + k] * v[2],
+        turn[_Y + k] * v[0] + turn[_V + k] * v[1] + turn[_Q + k] * v[2],
+        turn[_Z + k] * v[0] + turn[_W + k] * v[1] + turn[_R + k] * v[2],
+    )
+
+
+@compiled
+def chain(steps: Array, k: int, by: Array, turned: Array) -> None:
+    """Carry derivatives (3, 5) over step k of those that `derivatives` wrote."""
+    new = by.copy()
     for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        for b in range(_BY):
-            change[i, b] = slope[i] * (rate[k] * by[j, b] + rate[j] * by[k, b])
-        for b in range(2):
-            change[i, 3 + b] += rate[j] * rate[k] * by_ratios[i, b]
-
-
-@compiled
-def _turn(q: Array, by: Array, weight: float, turned: Array) -> None:
-    """Add what rates turn, in inertial axes."""
-    a, b, c, d = q
-    per = weight / (a * a + b * b + c * c + d * d)
-    for n in range(_BY):
-        x, y, z = per * by[0, n], per * by[1, n], per * by[2, n]
-        turned[0, n] += (a * a + b * b - c * c - d * d) * x + 2.0 * (
-            (b * c - a * d) * y + (b * d + a * c) * z
-        )
-        turned[1, n] += (a * a - b * b + c * c - d * d) * y + 2.0 * (
-            (b * c + a * d) * x + (c * d - a * b) * z
-        )
-        turned[2, n] += (a * a - b * b - c * c + d * d) * z + 2.0 * (
-            (b * d - a * c) * x + (c * d + a * b) * y
-        )
+        a, b, c = steps[LANES * i + k], steps[LANES * (3 + i) + k], steps[LANES * (6 + i) + k]
+        o = LANES * (15 + i) + k
+        u, v, w = steps[o], steps[o + _U], steps[o + _P]
+        for n in range(5):
+            new[i, n] = a * by[0, n] + b * by[1, n] + c * by[2, n]
+            turned[i, n] += u * by[0, n] + v * by[1, n] + w * by[2, n]
+        for n in range(2):
+            new[i, 3 + n] += steps[LANES * (9 + 3 * n + i) + k]
+            turned[i, 3 + n] += steps[LANES * (24 + 3 * n + i) + k]
+    by[:] = new

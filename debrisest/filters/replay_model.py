@@ -48,6 +48,21 @@ class PointRows(NamedTuple):
         return result
 
 
+class Frames(NamedTuple):
+    """The filter between the anchors, of a model that has it for less; runs first, as there."""
+
+    carry: Callable[[Array, Array, Array, Array, int, int], Array]
+    """(states before and after, information in the chart of those before, sensitivities of those
+    after, first epoch, last) -> information in the chart of those after."""
+    update: Callable[[Array, Array, int, Array, Array, bool, tuple[int, float]], Array]
+    """(states, information, epoch, normalised measurements (run, m), weights, whether with a gate,
+    most iterations and when they end) -> NIS (run,); the others are updated in place."""
+    move: Callable[[Array, Array], Array]
+    """(states, steps in plain errors) -> states, by way of their charts and of `retract`."""
+    covariance: Callable[[Array, Array], Array]
+    """(states, information in their charts) -> plain covariances (run, n_e, n_e)."""
+
+
 class ReplayModel(NamedTuple):
     """A deterministic system whose whole motion follows from its state at epoch 0.
 
@@ -98,12 +113,12 @@ class ReplayModel(NamedTuple):
     point_rows: Callable[[Array, Array, int, IntArray], PointRows] | None = None
     """The same as `rows`, for a model whose rows depend on few errors each."""
     sums: Callable[[Array, Array, int, IntArray, Array, Array], tuple[Array, ...]] | None = None
-    """(what `rows` takes, normalised measurements (run, epoch, m), weights) -> normalised residuals
-    (run, epoch, m), their information (run, n_e, n_e), gradient (run, n_e) and cost (run,), for a
-    model that has them for less without derivatives."""
+    """(what `rows` takes, normalised measurements (run, epoch, m), weights) -> information
+    (run, n_e, n_e), gradient (run, n_e) and cost (run,), for a model that has them for less."""
     course: Callable[[Array, int], tuple[Array, Array]] | None = None
     """(state at epoch 0, last) -> states (run, epoch, n) and measurements (run, epoch, m) up to
     epoch `last`, for a model that has them for less without derivatives."""
+    frames: Frames | None = None
     select: Callable[[IntArray], "ReplayModel"] | None = None
     """The model of some runs; without it, the model is the same for all."""
 

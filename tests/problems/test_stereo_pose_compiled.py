@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from debrisest import compiled
-from debrisest.dynamics.torque_free_sensitivity import torque_free_arc
+from debrisest.dynamics.relative_arc import rotation_arc
+from debrisest.dynamics.relative_orbit import leader_orbit
+from debrisest.filters.replay.frame_update import Belief, covariance_of, predict, update
+from debrisest.filters.replay.gauss_newton import move
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.problems.stereo_pose.model import Shown
 
@@ -28,7 +31,7 @@ def same(fast, slow, rtol: float = 1e-12) -> None:
         np.testing.assert_allclose(one, other, atol=rtol * np.abs(other).max(initial=1e-300))
 
 
-@pytest.mark.parametrize("speed", [1e-9, 0.02, 0.4])
+@pytest.mark.parametrize("speed", [1e-9, 0.02, 0.4, 3.0])
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_arcs_of_torque_free_rotation_are_the_same(monkeypatch, speed, way) -> None:
     draws = np.random.default_rng(3)
@@ -37,7 +40,8 @@ def test_arcs_of_torque_free_rotation_are_the_same(monkeypatch, speed, way) -> N
     start = q / np.linalg.norm(q, axis=-1, keepdims=True), speed * draws.normal(size=(8, 3))
     ratios = 0.2 * draws.normal(size=(8, 2))
     ratios[0] = 0.0
-    same(*both(monkeypatch, lambda: torque_free_arc(times, *start, ratios)))
+    orbit = leader_orbit(np.arange(61.0), 7.17e6, 0.05, 0.0)
+    same(*both(monkeypatch, lambda: rotation_arc(times, *start, ratios, orbit)))
 
 
 @pytest.mark.parametrize("q_lc", [(1, 0, 0, 0), TURNED])
@@ -63,6 +67,28 @@ def test_linearised_costs_are_the_same(monkeypatch, experiment, shown, q_lc) -> 
         return linearize(test.model, arc, test.prior, 14)
 
     same(*both(monkeypatch, found))
+
+
+@pytest.mark.parametrize("gate", [False, True])
+@pytest.mark.parametrize(
+    "shown", [Shown(), Shown(flow=False), Shown(acceleration=True), Shown(True, False, False, True)]
+)
+def test_a_frame_of_the_filter_is_the_same(monkeypatch, experiment, shown, gate) -> None:
+    def found():
+        test = experiment(3, 20, 2, shown=shown, q_lc=TURNED, rate=(-9.0, 5.0, 7.0))
+        assert (test.model.frames is not None) == compiled.available()
+        measured = test.measured.copy()
+        measured[0, 12, 3:5] += gate
+        measured[1, 12, -2:] = np.nan
+        arc = measured_arc(test.model, test.prior, test.covariance, measured)
+        at = linearize(test.model, arc, test.truth[:, 0], 11)
+        belief = Belief(at.last_state, 1e-2 * at.information)
+        belief, frame = update(test.model, predict(test.model, belief, 12), arc, 12, gate)
+        assert frame.rejected[0] == 2 * gate
+        moved = move(test.model, belief.state, np.linspace(-2.0, 1.5, 87).reshape(3, 29))
+        return *belief, frame.nis, covariance_of(test.model, belief), arc.weight, moved
+
+    same(*both(monkeypatch, found), 1e-9)
 
 
 @pytest.mark.parametrize("options", [{}, {"gate": True}])

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.descent import Damping, descend
 from debrisest.filters.linear_algebra import scaled_inverse, scaled_solve, solve
@@ -89,6 +90,8 @@ def gauss_newton(
     promises is below `tolerance`. What is `held` adds to the cost by as much as it is missed.
     """
 
+    arc = arc.until(last)
+
     def place(runs: IntArray, state: Array) -> Linearization:
         part = model.of(runs)
         if held is None:
@@ -109,6 +112,8 @@ def gauss_newton(
 
 def move(model: ReplayModel, state: Array, step: Array) -> Array:
     """State after a step in plain errors, taken in the state's own chart."""
+    if model.frames is not None:
+        return model.frames.move(state, step)
     return model.retract(state, (model.chart(state) @ step[..., None])[..., 0])
 
 
@@ -116,29 +121,38 @@ def _step(
     model: ReplayModel, at: Linearization, prior: Array, damping: Array
 ) -> tuple[Array, Array]:
     """Damped step, and the decrease of the cost that the undamped one promises."""
-    step = _limited_step(model, at, at.information)
+    step = _limited_step(model, at, prior, np.zeros(len(damping)))
     curved = (at.information @ step[..., None])[..., 0]
     decrement = (step * (2.0 * at.gradient - curved)).sum(-1)
     damped = np.flatnonzero(damping > 0.0)
     if len(damped):
-        part = take(at, damped)
-        matrix = part.information + damping[damped, None, None] * prior[damped]
-        step[damped] = _limited_step(model.of(damped), part, matrix)
+        part = take(at, damped), prior[damped], damping[damped]
+        step[damped] = _limited_step(model.of(damped), *part)
     return step, decrement
 
 
-def _limited_step(model: ReplayModel, at: Linearization, matrix: Array) -> Array:
-    """Best step by a matrix of second derivatives (run, n_e, n_e) that `retract` will not cut."""
-    step = scaled_solve(matrix, at.gradient)
+def _limited_step(model: ReplayModel, at: Linearization, prior: Array, damping: Array) -> Array:
+    """Best step that `retract` will not cut, damped by a part (run,) of the prior's information."""
+    step = _free_step(at, prior, damping)
     if model.excess is None:
         return step
     rows, excess = model.excess(at.state, step)
     runs = np.flatnonzero((excess != 0.0).any(-1))
     if len(runs):
-        toward = scaled_inverse(matrix[runs]) @ np.swapaxes(rows[runs], -1, -2)
+        matrix = at.information[runs] + damping[runs, None, None] * prior[runs]
+        toward = scaled_inverse(matrix) @ np.swapaxes(rows[runs], -1, -2)
         limits = rows[runs], excess[runs], toward
         step[runs] = _within(model.of(runs), at.state[runs], step[runs], *limits)
     return step
+
+
+def _free_step(at: Linearization, prior: Array, damping: Array) -> Array:
+    if not compiled.available():
+        damps = damping[:, None, None] * prior if damping.any() else 0.0
+        return scaled_solve(at.information + damps, at.gradient)
+    from debrisest.filters.replay.step_loops import steps
+
+    return steps(at.information, at.gradient, prior, damping)
 
 
 def _within(

@@ -33,6 +33,12 @@ class MeasuredArc(NamedTuple):
     seen: BoolArray
     weight: Array
 
+    def until(self, last: int) -> "MeasuredArc":
+        """Return what is known at epoch ``last``; weights are those of the whole arc."""
+        frames = slice(last + 1)
+        seen, weight = self.seen[:, frames], self.weight[:, frames]
+        return self._replace(measured=self.measured[:, frames], seen=seen, weight=weight)
+
 
 class Linearization(NamedTuple):
     """The cost around a state at epoch 0, as a quadratic form in the plain errors there."""
@@ -44,8 +50,6 @@ class Linearization(NamedTuple):
     gradient: Array
     last_state: Array
     last_sensitivity: Array
-    residual: Array
-    """Normalised, not weighted, (run, epoch, m); zero where nothing is measured."""
 
 
 def measured_arc(
@@ -63,7 +67,10 @@ def measured_arc(
 
 
 def residuals(model: ReplayModel, arc: MeasuredArc, shown: Array) -> Array:
-    """Normalised residuals of what is ``shown (run, epoch, m)`` from epoch 0 on, as `linearize`."""
+    """Normalised residuals of what is ``shown (run, epoch, m)`` from epoch 0 on, not weighted.
+
+    They are zero where nothing is measured.
+    """
     epochs = slice(shown.shape[1])
     residual = arc.measured[:, epochs] - shown / model.sigma
     return np.where(arc.seen[:, epochs], residual, 0.0)
@@ -75,11 +82,8 @@ def linearize(model: ReplayModel, arc: MeasuredArc, state: Array, last: int) -> 
     offset = model.plain_difference(arc.prior, state)
     gradient = (arc.information @ offset[..., None])[..., 0]
     cost = (offset * gradient).sum(-1)
-    epochs = slice(last + 1)
-    residual, *terms = _in_blocks(
-        model, states, sensitivity, arc.measured[:, epochs], arc.weight[:, epochs]
-    )
-    residual[~arc.seen[:, epochs]] = 0.0
+    known = arc.until(last)
+    terms = _in_blocks(model, states, sensitivity, known.measured, known.weight)
     return Linearization(
         state=state.copy(),
         cost=cost + terms[2],
@@ -87,7 +91,6 @@ def linearize(model: ReplayModel, arc: MeasuredArc, state: Array, last: int) -> 
         gradient=gradient + terms[1],
         last_state=states[:, -1].copy(),
         last_sensitivity=sensitivity[:, -1].copy(),
-        residual=residual,
     )
 
 
@@ -99,33 +102,31 @@ def _in_blocks(
     if model.sums is not None:
         return model.sums(states, sensitivity, 0, np.arange(epochs), measured, weight)
     n_e = len(model.error_names)
-    residual, information = np.empty(measured.shape), np.zeros((runs, n_e, n_e))
-    gradient, cost = np.zeros((runs, n_e)), np.zeros(runs)
+    information, gradient, cost = np.zeros((runs, n_e, n_e)), np.zeros((runs, n_e)), np.zeros(runs)
     for begin in range(0, runs, _RUNS):
         part = model.of(np.arange(begin, min(begin + _RUNS, runs)))
         for first in range(0, epochs, _EPOCHS):
             block = np.arange(first, min(first + _EPOCHS, epochs))
             some = slice(begin, begin + _RUNS), slice(first, first + _EPOCHS)
             at = states[some], sensitivity[some], 0, block
-            residual[some], *terms = sums(part, at, measured[some], weight[some])
+            terms = sums(part, at, measured[some], weight[some])
             information[some[0]] += terms[0]
             gradient[some[0]] += terms[1]
             cost[some[0]] += terms[2]
-    return residual, information, gradient, cost
+    return information, gradient, cost
 
 
 def sums(model: ReplayModel, at: Place, measured: Array, weight: Array) -> tuple[Array, ...]:
-    """Normalised residuals (run, epoch, m) of some epochs, and their normal equations.
+    """Information (run, n_e, n_e), gradient (run, n_e) and cost (run,) of some epochs.
 
-    These are information (run, n_e, n_e), gradient (run, n_e) and cost (run,), by the plain errors
-    of the epoch that `at` starts from.
+    They are by the plain errors of the epoch that `at` starts from.
     """
     if model.sums is not None:
         return model.sums(*at, measured, weight)
     if model.point_rows is None:
         predicted, derivative = model.rows(*at)
         residual = measured - predicted / model.sigma
-        return residual, *normal_equations(derivative / model.sigma[:, None], residual, weight)
+        return normal_equations(derivative / model.sigma[:, None], residual, weight)
     rows = model.point_rows(*at)
     residual = measured - rows.shown / model.sigma
-    return residual, *point_equations(rows, residual, weight, weight / model.sigma)
+    return point_equations(rows, residual, weight, weight / model.sigma)

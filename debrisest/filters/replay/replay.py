@@ -15,7 +15,13 @@ from debrisest.arrays import Array, BoolArray, Data, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter, joined
 from debrisest.filters.linear_algebra import inverse_of_some_rows, scaled_inverse
 from debrisest.filters.replay.cost import Reference, reference_of
-from debrisest.filters.replay.frame_update import Belief, first_frame, predict, update
+from debrisest.filters.replay.frame_update import (
+    Belief,
+    covariance_of,
+    first_frame,
+    predict,
+    update,
+)
 from debrisest.filters.replay.gauss_newton import CONVERGED, Solution, move
 from debrisest.filters.replay.measured_arc import MeasuredArc, measured_arc
 from debrisest.filters.replay.rival import compete, no_rival
@@ -195,12 +201,10 @@ def _filter(
             figures |= {"cost": solution.cost, "rival_excess": rival.gap}
             writer.conclude(_status(solution))
             if k == schedule[0]:
-                figures |= first_frame(arc, solution, k)._asdict()
+                figures |= first_frame(model, arc, solution, k)._asdict()
             if reference is not None and writer.keeps(k):
                 figures["cost_of_truth"] = reference.cost(arc.weight, k)
-        back = model.inverse_chart(belief.state)
-        spread = back @ scaled_inverse(belief.information) @ np.swapaxes(back, -1, -2)
-        going = writer.record(k, belief.state, spread, figures)
+        going = writer.record(k, belief.state, covariance_of(model, belief), figures)
 
 
 def _status(solution: Solution) -> IntArray:

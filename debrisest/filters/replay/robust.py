@@ -7,7 +7,7 @@ import numpy as np
 from debrisest.arrays import Array, IntArray
 from debrisest.filters import weights
 from debrisest.filters.replay.gauss_newton import CONVERGED, Solution, gauss_newton, move
-from debrisest.filters.replay.measured_arc import Linearization, MeasuredArc, residuals
+from debrisest.filters.replay.measured_arc import MeasuredArc, residuals
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.runs import put, take
 
@@ -57,7 +57,7 @@ def _confirmed(
     """Solution with the weights as they are, and the runs whose residuals speak against these."""
     solution = gauss_newton(model, arc, start, last, iterations, tolerance)
     frames = slice(last + 1)
-    found = arc.seen[:, frames] * weights.hard(solution.at.residual)
+    found = arc.seen[:, frames] * weights.hard(_left(model, arc, solution.at.state, last))
     return solution, np.flatnonzero((found != arc.weight[:, frames]).any((-2, -1)))
 
 
@@ -86,20 +86,30 @@ def _settle(
     """Solution from one start, its weights and its loss."""
     seen = arc.seen[:, : last + 1]
     weighted = arc._replace(weight=arc.weight.copy())
-    residual = residuals(model, arc, model.shown(start, last)[1])
+    residual = _left(model, arc, start, last)
     passes = [weights.cauchy] * (_EARLY_PASSES if frames <= _EARLY_FRAMES else 1)
     passes.append(weights.cauchy if frames <= _SOFT_FRAMES else weights.hard)
     for rule in passes:
         weight = seen * rule(residual)
         weighted.weight[:, : last + 1] = weight
         solution = gauss_newton(model, weighted, start, last, iterations, tolerance)
-        start, residual = move(model, solution.at.state, solution.step), solution.at.residual
-    return solution, weight, loss(model, arc, solution.at)
+        start = move(model, solution.at.state, solution.step)
+        residual = _left(model, arc, solution.at.state, last)
+    return solution, weight, _loss(model, arc, solution.at.state, residual)
 
 
-def loss(model: ReplayModel, arc: MeasuredArc, at: Linearization) -> Array:
+def loss(model: ReplayModel, arc: MeasuredArc, state: Array, last: int) -> Array:
     """Return the prior's cost and Cauchy's of all that was seen, (run,), whatever its weight."""
-    offset = model.plain_difference(arc.prior, at.state)
+    return _loss(model, arc, state, _left(model, arc, state, last))
+
+
+def _left(model: ReplayModel, arc: MeasuredArc, state: Array, last: int) -> Array:
+    """Residuals of the motion from ``state (run, n)`` at epoch 0."""
+    return residuals(model, arc, model.shown(state, last)[1])
+
+
+def _loss(model: ReplayModel, arc: MeasuredArc, state: Array, residual: Array) -> Array:
+    offset = model.plain_difference(arc.prior, state)
     prior = (offset[:, None] @ arc.information @ offset[..., None])[:, 0, 0]
-    squares = (at.residual / weights.CAUCHY_SCALE) ** 2
+    squares = (residual / weights.CAUCHY_SCALE) ** 2
     return np.asarray(prior + weights.cauchy_loss(squares).sum((-2, -1)))

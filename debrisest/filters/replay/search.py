@@ -29,4 +29,4 @@ class Search(NamedTuple):
 
     def loss(self, model: ReplayModel, arc: MeasuredArc, found: Solution) -> Array:
         """What solutions are compared by (run,): the cost, or that of Cauchy, with outliers."""
-        return loss(model, arc, found.at) if self.gate else found.cost
+        return loss(model, arc, found.at.state, self.last) if self.gate else found.cost

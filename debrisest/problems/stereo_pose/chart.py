@@ -18,9 +18,8 @@ from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.kepler import MU_EARTH
-from debrisest.dynamics.relative_arc import rotation_arc
+from debrisest.dynamics.relative_arc import rotation, rotation_arc
 from debrisest.dynamics.relative_orbit import translation_step
-from debrisest.dynamics.relative_pose import exact_rotation
 from debrisest.problems.stereo_pose.model import (
     POINTS,
     POSITION,
@@ -79,6 +78,10 @@ def retract(state: Array, error: Array, points: int) -> Array:
 
 def excess(state: Array, step: Array) -> tuple[Array, Array]:
     """Derivative ``(..., 2, n_e)`` of two slopes of the inertia, and what `retract` cuts."""
+    if compiled.available():
+        from debrisest.problems.stereo_pose.chart_loops import excess as excess_compiled
+
+        return excess_compiled(state, step)
     rows = np.zeros((*step.shape[:-1], 2, step.shape[-1]))
     rows[..., K_ERROR] = inertia_ratios.slopes_by_ratios(state[..., K])
     return rows, inertia_ratios.excess(state[..., K], step[..., K_ERROR])
@@ -140,7 +143,7 @@ def course(known: StereoGeometry, state: Array, last: int) -> Array:
     epochs = np.arange(last + 1)
     states = np.repeat(state[:, None], last + 1, axis=1)
     states[..., POSITION], states[..., VELOCITY] = _translation(known, state, epochs)
-    states[..., Q], states[..., RATE] = exact_rotation(
+    states[..., Q], states[..., RATE] = rotation(
         known.times[epochs], state[:, Q], state[:, RATE], state[:, K], known.leader.at(2 * epochs)
     )
     return states
@@ -151,9 +154,8 @@ def rewind(known: StereoGeometry, state: Array, epoch: int) -> Array:
     result, ends = state.copy(), np.array([epoch, 0])
     position, velocity = _translation(known, state, _epochs(epoch, 0))
     result[:, POSITION], result[:, VELOCITY] = position[:, -1], velocity[:, -1]
-    times = known.times[ends] - known.times[epoch]
-    q, rate = exact_rotation(
-        times, state[:, Q], state[:, RATE], state[:, K], known.leader.at(2 * ends)
+    q, rate = rotation(
+        known.times[ends], state[:, Q], state[:, RATE], state[:, K], known.leader.at(2 * ends)
     )
     result[:, Q], result[:, RATE] = q[:, -1], rate[:, -1]
     return result

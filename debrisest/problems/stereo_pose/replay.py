@@ -9,7 +9,7 @@ from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics import inertia_ratios
 from debrisest.dynamics.relative_orbit import transitions
 from debrisest.filters.replay.normal_equations import normal_equations
-from debrisest.filters.replay_model import PointRows, ReplayModel
+from debrisest.filters.replay_model import Frames, PointRows, ReplayModel
 from debrisest.problems.stereo_pose import chart
 from debrisest.problems.stereo_pose.doubts import doubts
 from debrisest.problems.stereo_pose.mirror import mirror
@@ -24,6 +24,7 @@ from debrisest.problems.stereo_pose.model import (
     points_in_view,
     shown_by_points,
     shown_of_points,
+    target_acceleration,
 )
 from debrisest.problems.stereo_pose.start import first_guess
 
@@ -39,7 +40,7 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
     """
     points = known.points
     centre = transitions(known.leader, known.steps)
-    back = np.linalg.inv(centre)
+    back = np.asarray(np.linalg.inv(centre), dtype=np.float64)
 
     def at_epochs(states: Array, turning: Array, first: int, epochs: IntArray) -> PointRows:
         return point_rows(known, states, turning, centre[epochs] @ back[first], epochs)
@@ -75,7 +76,38 @@ def replay_model(known: StereoGeometry, sigma: Array, prior_sigma: Array) -> Rep
         point_rows=at_epochs,
         sums=sums if compiled.available() else None,
         course=lambda state, last: _course(known, state, last),
+        frames=_frames(known, sigma, centre, back) if compiled.available() else None,
     )
+
+
+def _frames(known: StereoGeometry, sigma: Array, centre: Array, back: Array) -> Frames:
+    """The filter between the anchors, by compiled loops."""
+    from debrisest.problems.stereo_pose.carry_loops import carried
+    from debrisest.problems.stereo_pose.chart_loops import moved
+    from debrisest.problems.stereo_pose.frame_loops import covariances, updated
+
+    camera = *_camera(known), known.rows, sigma
+
+    def carry(
+        before: Array, after: Array, information: Array, turning: Array, first: int, last: int
+    ) -> Array:
+        returned = centre[first] @ back[last]
+        return carried(before, after, information, turning.copy(), returned)
+
+    def update(
+        state: Array,
+        information: Array,
+        k: int,
+        measured: Array,
+        weight: Array,
+        gate: bool,
+        limits: tuple[int, float],
+    ) -> Array:
+        spin = float(known.leader.rate[2 * k])
+        seen = measured, weight
+        return updated(state, information, camera, spin, *seen, gate, limits)
+
+    return Frames(carry, update, moved, covariances)
 
 
 def _compiled(
@@ -86,27 +118,42 @@ def _compiled(
     weight: Array,
 ) -> tuple[Array, ...]:
     """Normal equations of what `point_rows` gives of ``at``, by compiled loops."""
+    from debrisest.problems.stereo_pose.lane_loops import LANES
     from debrisest.problems.stereo_pose.replay_loops import point_sums
 
     count = known.points * len(known.rows)
-    camera = np.eye(3) if known.to_camera is None else known.to_camera.copy(), known.baseline
-    states, turning, centre = (np.ascontiguousarray(part) for part in at[:3])
-    points = (np.ascontiguousarray(part[..., :count]) for part in (measured, weight))
-    found = point_sums(states, turning, centre, camera, known.rows, sigma[:count], *points)
+    camera = _camera(known)
+    states, turning = (np.ascontiguousarray(part) for part in at[:2])
+    centre = np.zeros((6, 6, len(at[2]) + LANES))
+    centre[..., :-LANES] = (np.kron(np.eye(2), camera[0]) @ at[2]).T
+    seen = np.ascontiguousarray(measured), np.ascontiguousarray(weight)
+    found = point_sums(states, turning, centre, camera, known.rows, sigma[:count], *seen)
     if not known.shown.acceleration:
         return found
     shown, by_rest = _acceleration_rows(known, states, turning, at[-1])
     left = measured[..., count:] - shown / sigma[count:]
     rest = normal_equations(by_rest / sigma[count:, None], left, weight[..., count:])
-    residual, information, gradient, cost = found
+    information, gradient, cost = found
     information[:, :14, :14] += rest[0]
     gradient[:, :14] += rest[1]
-    return np.concatenate([residual, left], -1), information, gradient, cost + rest[2]
+    return information, gradient, cost + rest[2]
 
 
 def _course(known: StereoGeometry, state: Array, last: int) -> tuple[Array, Array]:
-    states = chart.course(known, state, last)
-    return states, measurement(known, states, np.arange(last + 1))
+    states, epochs = chart.course(known, state, last), np.arange(last + 1)
+    if not compiled.available():
+        return states, measurement(known, states, epochs)
+    from debrisest.problems.stereo_pose.replay_loops import points_shown
+
+    shown = points_shown(states, _camera(known), known.rows)
+    if known.shown.acceleration:
+        shown = np.concatenate([shown, target_acceleration(known, states, epochs)], -1)
+    return states, shown
+
+
+def _camera(known: StereoGeometry) -> tuple[Array, float]:
+    """The cameras' axes (3, 3) in the leader's, and the baseline."""
+    return np.eye(3) if known.to_camera is None else known.to_camera.copy(), known.baseline
 
 
 def _dense(rows: PointRows) -> tuple[Array, Array]:

@@ -1,15 +1,26 @@
 """Normal equations of the points before two cameras as plain loops, for `debrisest.compiled`.
 
-Equations are those of `replay.point_rows` and of `sensors/stereo.py`, where their words are.
+Equations are those of `replay.point_rows`, where their words are. What points tell of the motion
+at an epoch is summed up before it is told of that at the start, `LANES` epochs at once.
 """
 
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
-from debrisest.attitude.rotation_loops import matrix_of
 from debrisest.compiled import compiled
+from debrisest.problems.stereo_pose.lane_loops import (
+    LANES,
+    add_six,
+    add_two,
+    forces,
+    shown_of,
+    to_body,
+    told_by_rows,
+    told_of_arm,
+    weighted,
+)
 
-Vector = tuple[float, float, float]
+_TURNS = 36  # lanes of `way` that come before those of the rotation
 
 
 @compiled
@@ -22,237 +33,195 @@ def point_sums(
     noise: Array,
     measured: Array,
     weight: Array,
-) -> tuple[Array, Array, Array, Array]:
-    """Return residuals (run, epoch, N rows), information, gradient and cost of all epochs.
+) -> tuple[Array, Array, Array]:
+    """Return information, gradient and cost of all epochs, as `measured_arc.sums`.
 
     As `normal_equations.point_equations`. ``states (run, epoch, 15 + 3N)``, ``turning (run, epoch,
-    6, 8)``, ``centre (epoch, 6, 6)``; a camera has its axes (3, 3) in the leader's, and the
-    baseline; ``rows (r,)`` are those of `stereo.measure`, ``noise (N r,)``; what is measured is
-    normalised.
+    6, 8)``, ``centre (6, 6, epoch + LANES)`` by the start, the number
+    in the cameras' axes, and the epoch; a camera has its axes (3, 3) in the leader's, and the
+    baseline; ``rows (r,)`` are those of `stereo.measure`, ``noise (m,)``; what is measured is
+    normalised, and its first N r columns are those of the points, the others are left alone.
     """
-    runs, epochs = states.shape[:2]
-    each = len(rows)
-    points = (states.shape[2] - 15) // 3
+    (runs, epochs), points = states.shape[:2], (states.shape[2] - 15) // 3
     n_e = 14 + 3 * points
-    residual, information = np.empty((runs, epochs, len(noise))), np.zeros((runs, n_e, n_e))
-    gradient, cost = np.zeros((runs, n_e)), np.zeros(runs)
-    by, shown = np.zeros((each, 6)), np.empty(each)
-    square, pull, by_arm = np.empty((6, 6)), np.empty(6), np.empty((15, 3))
-    joint, total, moved = np.empty((12, n_e - 2)), np.empty(12), np.empty((14, n_e - 2))
+    information, gradient, cost = np.zeros((runs, n_e, n_e)), np.zeros((runs, n_e)), np.zeros(runs)
+    body, way = np.empty(18 * LANES), np.empty(84 * LANES)
+    view = np.empty(3 * LANES), np.empty(8 * LANES), np.empty(9 * LANES)
+    told = np.zeros(9 * LANES), np.zeros(9 * LANES)
+    parts = np.empty(36 * LANES), np.empty(6 * LANES), np.empty(45 * LANES), np.empty(18 * LANES)
+    joint, force, own = np.empty(108 * LANES), np.empty(12 * LANES), np.empty(3 * LANES)
+    sums, pulls, costs = np.empty(14 * n_e * LANES), np.empty(n_e * LANES), np.empty(LANES)
+    owns = np.empty(9 * points * LANES)
     for run in range(runs):
-        for k in range(epochs):
-            state, turn = states[run, k], matrix_of(states[run, k, 9:13])
-            rate = state[6], state[7], state[8]
-            joint[:], total[:] = 0.0, 0.0
-            for point in range(points):
-                body = state[15 + 3 * point : 18 + 3 * point]
-                arm = _applied(turn, body[0], body[1], body[2])
-                _rows(state, arm, camera, rows, shown, by)
-                square[:], pull[:] = 0.0, 0.0
-                for i in range(each):
-                    m = each * point + i
-                    left = measured[run, k, m] - shown[i] / noise[m]
-                    residual[run, k, m] = left
-                    left *= weight[run, k, m]
-                    cost[run] += left * left
-                    flows = 4 <= rows[i] < 8
-                    _add_row(by[i], weight[run, k, m] / noise[m], left, flows, square, pull)
-                first = 14 + 3 * point
-                told = _add_point(square, pull, arm, rate, by_arm, joint, total)
-                _to_body(turn, by_arm, joint[:, first - 2 : first + 1])
-                told = _applied(turn.T, told[0], told[1], told[2])
-                for a in range(3):
-                    gradient[run, first + a] += told[a]
-                    for b in range(3):
-                        information[run, first + a, first + b] += by_arm[12 + a, b]
-            at = turning[run, k], centre[k]
-            _add_motion(joint, total, *at, moved, information[run], gradient[run])
-        _mirror(information[run])
-    return residual, information, gradient, cost
+        sums[:], pulls[:], costs[:], owns[:] = 0.0, 0.0, 0.0, 0.0
+        seen = measured[run], weight[run]
+        for first in range(0, epochs, LANES):
+            count = min(LANES, epochs - first)
+            width = 8 * ((count + 7) // 8)
+            _gather(states[run], camera[0], first, count, width, body)
+            _gather_ways(turning[run], centre, camera[0], first, count, width, way)
+            joint[:], force[:] = 0.0, 0.0
+            for i in range(points):
+                place = states[run, first, 15 + 3 * i : 18 + 3 * i]
+                arm, at, shown = view
+                shown_of(body, place, camera[1], width, arm, at, shown)
+                weighted(seen, noise, rows, (i, first, count, width), shown, *told, costs)
+                square, push, by_arm, by_rate = parts
+                told_by_rows(*told, at, camera[1], width, square, push)
+                told_of_arm(square, arm, body, width, by_arm, by_rate, joint)
+                to_body(by_arm, body, width)
+                forces(push, arm, body, width, force, own)
+                lane = LANES * (14 + 3 * i)
+                into = sums[14 * lane :], pulls[lane:], owns[9 * LANES * i :]
+                _add_point(way, by_arm, own, width, *into)
+            _add_motion(way, joint, force, width, sums, pulls)
+        cost[run] = np.sum(costs)
+        _gathered(sums, pulls, owns, information[run], gradient[run])
+    return information, gradient, cost
 
 
 @compiled
-def _mirror(square: Array) -> None:
-    """Write what is below the diagonal from what is above it."""
-    for a in range(len(square)):
-        for b in range(a):
-            square[a, b] = square[b, a]
+def points_shown(states: Array, camera: tuple[Array, float], rows: IntArray) -> Array:
+    """Return what the cameras show of the points at all epochs, (run, epoch, N r)."""
+    (runs, epochs), points = states.shape[:2], (states.shape[2] - 15) // 3
+    each = len(rows)
+    result, body = np.empty((runs, epochs, points * each)), np.empty(18 * LANES)
+    arm, view, shown = np.empty(3 * LANES), np.empty(8 * LANES), np.empty(9 * LANES)
+    for run in range(runs):
+        for first in range(0, epochs, LANES):
+            count = min(LANES, epochs - first)
+            width = 8 * ((count + 7) // 8)
+            _gather(states[run], camera[0], first, count, width, body)
+            for i in range(points):
+                place = states[run, first, 15 + 3 * i : 18 + 3 * i]
+                shown_of(body, place, camera[1], width, arm, view, shown)
+                for k in range(count):
+                    for r in range(each):
+                        result[run, first + k, each * i + r] = shown[LANES * rows[r] + k]
+    return result
 
 
 @compiled
-def _add_row(by: Array, scale: float, left: float, flows: bool, square: Array, pull: Array) -> None:
-    """Add a row's squares above the diagonal; one that does not flow depends on the place alone."""
-    for a in range(6 if flows else 3):
-        scaled = by[a] * scale
-        pull[a] += scaled * left
-        for b in range(a, 6 if flows else 3):
-            square[a, b] += scaled * (by[b] * scale)
+def _gather(states: Array, axes: Array, first: int, count: int, width: int, body: Array) -> None:
+    """Write the body's lanes (`lane_loops`) of some epochs; those without one have the last."""
+    q = np.empty(4 * LANES)
+    for k in range(width):
+        epoch = first + min(k, count - 1)
+        for c in range(9):
+            body[LANES * c + k] = states[epoch, c]
+        for c in range(4):
+            q[LANES * c + k] = states[epoch, 9 + c]
+    for k in range(width):
+        w, x, y, z = q[k], q[LANES + k], q[2 * LANES + k], q[3 * LANES + k]
+        body[9 * LANES + k], body[10 * LANES + k] = (
+            1.0 - 2.0 * (y * y + z * z),
+            2.0 * (x * y + w * z),
+        )
+        body[11 * LANES + k], body[12 * LANES + k] = 2.0 * (x * z - w * y), 2.0 * (x * y - w * z)
+        body[13 * LANES + k], body[14 * LANES + k] = (
+            1.0 - 2.0 * (x * x + z * z),
+            2.0 * (y * z + w * x),
+        )
+        body[15 * LANES + k], body[16 * LANES + k] = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)
+        body[17 * LANES + k] = 1.0 - 2.0 * (x * x + y * y)
+    for c in range(0, 18, 3):
+        _turn(axes, body, c, width)
 
 
 @compiled
-def _rows(
-    state: Array,
-    arm: Vector,
-    camera: tuple[Array, float],
-    rows: IntArray,
-    shown: Array,
-    by: Array,
+def _gather_ways(
+    turning: Array, centre: Array, axes: Array, first: int, count: int, width: int, way: Array
 ) -> None:
-    """Write what a point shows (r,), and its derivative (r, 6) by its place and velocity."""
-    axes, baseline = camera
-    moved = _cross((state[6], state[7], state[8]), arm)
-    point = _applied(axes, state[0] + arm[0], state[1] + arm[1], state[2] + arm[2])
-    velocity = _applied(axes, state[3] + moved[0], state[4] + moved[1], state[5] + moved[2])
-    near = 1.0 / point[1]
-    recede = velocity[1] * near
-    for i in range(len(rows)):
-        row, across = rows[i], 2 * (rows[i] % 2)
-        slope = (point[across] - (baseline if row % 4 == 2 else 0.0)) * near
-        side, ahead = near, -slope * near
-        if row < 4:
-            shown[i] = slope
-        elif row < 8:
-            shown[i] = (velocity[across] - slope * velocity[1]) * near
-            by[i, 3], by[i, 4], by[i, 5] = _row(axes, across, near, -slope * near)
-            side, ahead = -recede * near, (slope * recede - shown[i]) * near
-        else:
-            shown[i], side, ahead = -baseline * near, 0.0, baseline * near * near
-        by[i, 0], by[i, 1], by[i, 2] = _row(axes, across, side, ahead)
+    """Write the ways (84) of some epochs from the start: ``centre`` and ``turning``, by columns."""
+    for k in range(width):
+        for c in range(6):
+            for a in range(8):
+                epoch = first + min(k, count - 1)
+                way[LANES * (_TURNS + 6 * a + c) + k] = turning[epoch, c, a]
+    for a in range(6):
+        for c in range(6):
+            for k in range(width):
+                way[LANES * (6 * a + c) + k] = centre[a, c, first + k]
+    for c in range(_TURNS, 84, 3):
+        _turn(axes, way, c, width)
+
+
+@compiled
+def _turn(axes: Array, lanes: Array, of: int, width: int) -> None:
+    """Turn vectors in place."""
+    o = LANES * of
+    for k in range(width):
+        x, y, z = lanes[o + k], lanes[o + LANES + k], lanes[o + 2 * LANES + k]
+        lanes[o + k] = axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z
+        lanes[o + LANES + k] = axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z
+        lanes[o + 2 * LANES + k] = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z
 
 
 @compiled
 def _add_point(
-    square: Array,
-    pull: Array,
-    arm: Vector,
-    rate: Vector,
-    by_arm: Array,
-    whole: Array,
-    total: Array,
-) -> Vector:
-    """Add what place and velocity of a point tell of the motion; return the pull of its arm.
+    way: Array, told: Array, own: Array, width: int, sums: Array, pulls: Array, owns: Array
+) -> None:
+    """Add what a point in the body tells together with the motion at the start, and by itself.
 
-    Of ``whole`` that is above the diagonal. ``by_arm (15, 3)`` is written: what position, velocity,
-    rate, attitude and the arm itself tell together with the arm.
+    ``sums (3, 14)``, ``pulls (3)``, ``owns (3, 3)``.
     """
-    for i in range(6):
-        for j in range(i):
-            square[i, j] = square[j, i]
-    for i in range(6):
-        flow = square[i, 3], square[i, 4], square[i, 5]
-        turned, spun = _cross(flow, rate), _cross(arm, flow)
-        for j in range(3):
-            by_arm[i, j] = square[i, j] + turned[j]
-            whole[i, 6 + j] += spun[j]
-        for j in range(i, 6):
-            whole[i, j] += square[i, j]
-    for j in range(3):
-        flow = by_arm[3, j], by_arm[4, j], by_arm[5, j]
-        turned, spun = _cross(flow, rate), _cross(arm, flow)
-        of_arm = by_arm[0, j] + turned[0], by_arm[1, j] + turned[1], by_arm[2, j] + turned[2]
-        attitude = _cross(arm, of_arm)
-        for i in range(3):
-            by_arm[6 + i, j], by_arm[9 + i, j], by_arm[12 + i, j] = spun[i], attitude[i], of_arm[i]
-    _add_turns(square, by_arm, arm, whole)
-    flow = pull[3], pull[4], pull[5]
-    turned, spun = _cross(flow, rate), _cross(arm, flow)
-    of_arm = pull[0] + turned[0], pull[1] + turned[1], pull[2] + turned[2]
-    attitude = _cross(arm, of_arm)
-    for i in range(3):
-        total[i] += pull[i]
-        total[3 + i] += pull[3 + i]
-        total[6 + i] += spun[i]
-        total[9 + i] += attitude[i]
-    return of_arm
-
-
-@compiled
-def _add_turns(square: Array, by_arm: Array, arm: Vector, whole: Array) -> None:
-    """Add what rate and attitude tell by themselves, and the attitude with all."""
-    x = _cross(arm, (square[3, 3], square[4, 3], square[5, 3]))
-    y = _cross(arm, (square[3, 4], square[4, 4], square[5, 4]))
-    z = _cross(arm, (square[3, 5], square[4, 5], square[5, 5]))
-    for i in range(3):
-        spun = _cross(arm, (x[i], y[i], z[i]))
-        for j in range(3):
-            whole[6 + i, 6 + j] += spun[j]
-    for i in range(12):
-        attitude = _cross(arm, (by_arm[i, 0], by_arm[i, 1], by_arm[i, 2]))
-        for j in range(3):
-            whole[i, 9 + j] += attitude[j]
-
-
-@compiled
-def _to_body(turn: Array, by_arm: Array, own: Array) -> None:
-    """Write what motion and point in the body tell together (12, 3), and the latter by itself.
-
-    That takes the place of what the arm tells by itself, the last of ``by_arm (15, 3)``.
-    """
-    for i in range(15):
-        told = _applied(turn.T, by_arm[i, 0], by_arm[i, 1], by_arm[i, 2])
-        place = own[i] if i < 12 else by_arm[i]
-        place[0], place[1], place[2] = told
-    for j in range(3):
-        told = _applied(turn.T, by_arm[12, j], by_arm[13, j], by_arm[14, j])
-        by_arm[12, j], by_arm[13, j], by_arm[14, j] = told
+    turns = way[_TURNS * LANES :]
+    for b in range(3):
+        with_centre, with_turn = told[15 * b * LANES :], told[(15 * b + 6) * LANES :]
+        add_six(way, with_centre, width, sums[14 * b * LANES :])
+        add_six(turns, with_turn, width, sums[(14 * b + 6) * LANES :])
+        add_two(turns[36 * LANES :], with_turn, width, sums[(14 * b + 12) * LANES :])
+        for k in range(width):
+            pulls[LANES * b + k] += own[LANES * b + k]
+        for a in range(3):
+            o, i = LANES * (3 * b + a), LANES * (15 * b + 12 + a)
+            for k in range(width):
+                owns[o + k] += told[i + k]
 
 
 @compiled
 def _add_motion(
-    joint: Array,
-    total: Array,
-    turning: Array,
-    centre: Array,
-    moved: Array,
-    information: Array,
-    gradient: Array,
+    way: Array, joint: Array, force: Array, width: int, sums: Array, pulls: Array
 ) -> None:
-    """Add what an epoch tells, ``joint (12, 12 + 3N)``, by the errors of the motion at the start.
+    """Add what epochs tell of their motion, ``joint (3, 6, 6)`` and ``force (12)``, at the start.
 
-    Of the motion by itself, the first twelve, what is above the diagonal is given.
+    ``sums (14, 14)``, of which what the rotation tells with the centre is left out, ``pulls (14)``.
     """
-    for a in range(12):
-        for b in range(a):
-            joint[a, b] = joint[b, a]
-    moved[:] = 0.0
-    for c in range(6):
-        for a in range(6):
-            gradient[a] += centre[c, a] * total[c]
-            for b in range(joint.shape[1]):
-                moved[a, b] += centre[c, a] * joint[c, b]
-        for a in range(8):
-            gradient[6 + a] += turning[c, a] * total[6 + c]
-            for b in range(joint.shape[1]):
-                moved[6 + a, b] += turning[c, a] * joint[6 + c, b]
+    turns, moved = way[_TURNS * LANES :], np.empty(12 * LANES)
+    add_six(way, force, width, pulls)
+    add_six(turns, force[6 * LANES :], width, pulls[6 * LANES :])
+    add_two(turns[36 * LANES :], force[6 * LANES :], width, pulls[12 * LANES :])
     for a in range(14):
-        for c in range(6):
-            for b in range(6):
-                information[a, b] += moved[a, c] * centre[c, b]
-            for b in range(8):
-                information[a, 6 + b] += moved[a, 6 + c] * turning[c, b]
-        for b in range(12, joint.shape[1]):
-            information[a, 2 + b] += moved[a, b]
+        moved[:] = 0.0
+        own = way[6 * a * LANES :]
+        if a < 6:
+            add_six(joint, own, width, moved)
+            add_six(joint[36 * LANES :], own, width, moved[6 * LANES :])
+            add_six(way, moved, width, sums[14 * a * LANES :])
+        else:
+            add_six(joint[72 * LANES :], own, width, moved[6 * LANES :])
+        add_six(turns, moved[6 * LANES :], width, sums[(14 * a + 6) * LANES :])
+        add_two(turns[36 * LANES :], moved[6 * LANES :], width, sums[(14 * a + 12) * LANES :])
 
 
 @compiled
-def _applied(matrix: Array, x: float, y: float, z: float) -> Vector:
-    return (
-        matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2] * z,
-        matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2] * z,
-        matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2] * z,
-    )
+def _gathered(sums: Array, pulls: Array, owns: Array, information: Array, gradient: Array) -> None:
+    """Write the sums over all lanes."""
+    n_e = len(gradient)
+    for b in range(n_e):
+        gradient[b] = _over(pulls, b)
+        for a in range(min(b + 1, 14)):
+            information[a, b] = _over(sums, 14 * a + b if b < 14 else 14 * b + a)
+            information[b, a] = information[a, b]
+    for i in range(0, n_e - 14, 3):
+        for a in range(3):
+            for b in range(3):
+                information[14 + i + a, 14 + i + b] = _over(owns, 3 * (i + b) + a)
 
 
 @compiled
-def _row(axes: Array, across: int, side: float, ahead: float) -> Vector:
-    """A vector in the leader's axes, of its components across and ahead in a camera's."""
-    return (
-        side * axes[across, 0] + ahead * axes[1, 0],
-        side * axes[across, 1] + ahead * axes[1, 1],
-        side * axes[across, 2] + ahead * axes[1, 2],
-    )
-
-
-@compiled
-def _cross(u: Vector, v: Vector) -> Vector:
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+def _over(lanes: Array, number: int) -> float:
+    total = 0.0
+    for k in range(LANES * number, LANES * (number + 1)):
+        total += lanes[k]
+    return total
