@@ -33,6 +33,7 @@ from debrisest.filters.association.restless import Bank
 from debrisest.filters.association.sensor import updated
 from debrisest.filters.association.update import Scan, Tracks
 from debrisest.filters.association.weights import Validation, probabilistic
+from debrisest.filters.kalman.unscented import unscented
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
@@ -67,7 +68,7 @@ def kernels() -> dict[str, Kernel]:
         ),
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
         "descents on known points, 4 arcs of 150 epochs": descents(),
-        "91 states, sigma points of 20 runs moved": sigma_points(),
+        "unscented filter, 91 states, 20 runs of two epochs": sigma_points(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
         **{
             f"association, one sensor of seven detections, {runs} runs": association(runs)
@@ -92,18 +93,25 @@ def descents() -> Kernel:
 
 
 def sigma_points() -> Kernel:
-    """Return a step of the points of 91 errors, of which four fifths share their core."""
+    """Return a filter of 91 errors, two epochs long."""
     draws = np.random.default_rng(1)
     known = redundant_model.CameraGeometry(points=12, mean_motion=1e-3, step=1.0, focal_px=1000.0)
-    state = np.zeros((20, 183, 91))
-    state[...] = draws.normal(size=(20, 1, 91))
-    state[..., redundant_model.RATE] *= 0.02
-    state[..., redundant_model.POSITION] += [5.0, 17.0, 6.0]
-    state[..., redundant_model.INERTIA] = [135.0, 208.0, 260.0, 5.0, -3.0, 8.0]
-    moved = np.arange(1, 1 + redundant_model.CORE)
-    state[:, moved, moved - 1] += 1e-3
-    state[:, 91 + moved, moved - 1] -= 1e-3
-    return lambda: (redundant_model.process(known, state),)
+    state = draws.normal(size=(20, 91))
+    state[:, redundant_model.RATE] *= 0.02
+    state[:, redundant_model.POSITION] += [5.0, 17.0, 6.0]
+    state[:, redundant_model.INERTIA] = [135.0, 208.0, 260.0, 5.0, -3.0, 8.0]
+    state[:, known.camera_points][:, 2::3] += 20.0
+    covariance = np.tile(1e-4 * np.eye(91), (20, 1, 1))
+    with patch.object(compiled, "available", lambda: True):
+        fast = redundant_model.redundant_model(known, 1.0, 0.01)
+    shown = fast.measurement(state, 0)
+    measured = shown[:, None] + draws.normal(size=(20, 2, 25)) * [*24 * [1.0], 0.01]
+
+    def kernel() -> tuple[Array]:
+        model = fast if compiled.available() else fast._replace(paired=None)
+        return (unscented(model, state, covariance, measured).state,)
+
+    return kernel
 
 
 def of_replay() -> dict[str, Kernel]:

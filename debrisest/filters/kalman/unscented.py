@@ -7,6 +7,7 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
+from debrisest.filters.kalman.unscented_root import PairRule, unscented_root
 from debrisest.filters.linear_algebra import solve, square_root
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.model import Model, add, subtract
@@ -66,9 +67,13 @@ def unscented(
       symmetric, and positive when the weights are.
 
     Points are drawn by addition unless the model has its own `difference`, in which case its
-    `retract` draws them; the corrected state is always `retract(x, K nu)`.
+    `retract` draws them; the corrected state is always `retract(x, K nu)`. A model's compiled
+    steps of pairs do the same by `unscented_root`.
     """
     rule = _rule(model, covariance.shape[-1], spread)
+    pairs = PairRule(rule.scale, spread.beta - spread.alpha**2)
+    if redraw and model.paired and pairs.positive(covariance.shape[-1]):
+        return unscented_root(model, model.paired, pairs, state, covariance, measurements, keep)
     epochs = measurements.shape[1]
     names = model.error_names
     writer = EstimatesWriter(names, state, covariance, epochs, keep, totals=["repairs"])
