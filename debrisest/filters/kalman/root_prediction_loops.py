@@ -9,7 +9,7 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.compiled import compiled
-from debrisest.filters.kalman.row_loops import add_products
+from debrisest.linear_algebra_loops import add_products
 
 
 @compiled

@@ -9,7 +9,9 @@ import numpy as np
 
 from debrisest.arrays import Array
 from debrisest.compiled import compiled
-from debrisest.filters.kalman.row_loops import BLOCK, add_blocks, add_products
+from debrisest.linear_algebra_loops import add_products, cholesky
+
+_BLOCK = 16  # columns that are updated together
 
 
 @compiled
@@ -28,17 +30,17 @@ def correct(
     total, gain, turned = np.empty((m, m)), np.empty((m, n)), np.empty((m, n))
     factors, halves = (
         (np.empty((m, m)), np.empty((m, m))),
-        (np.empty((m, BLOCK)), np.empty((BLOCK, m))),
+        (np.empty((m, _BLOCK)), np.empty((_BLOCK, m))),
     )
-    inner = np.empty((BLOCK, BLOCK)), np.empty((BLOCK, BLOCK))
-    updated = np.empty((BLOCK, n))
+    inner = np.empty((_BLOCK, _BLOCK)), np.empty((_BLOCK, _BLOCK))
+    updated = np.empty((_BLOCK, n))
     for run in range(runs):
         _leave_out(innovation[run], odd[run], noise[run])
         total[:], gain[:], turned[:] = noise[run], 0.0, odd[run].T
         made, along = columns[run], odd[run]
-        for end in range(n, 0, -BLOCK):
-            first = max(end - BLOCK, 0)
-            _cholesky(total, factors)
+        for end in range(n, 0, -_BLOCK):
+            first = max(end - _BLOCK, 0)
+            cholesky(total, *factors)
             _solve_block(along, first, end, factors, halves, inner)
             _correct_block(made, gain, halves[1], inner[1], first, end, updated)
             for q in range(m):
@@ -47,7 +49,7 @@ def correct(
             for c in range(first, end):
                 for r in range(np.uint64(first), np.uint64(n)):
                     made[c, r] = updated[c - first, r]
-        _cholesky(total, factors)
+        cholesky(total, *factors)
         nis[run] = _solve(factors, innovation, run)
         add_products(correction, run, gain, innovation, run, 0, m, 0, 1.0)
         for c in range(n):
@@ -81,25 +83,25 @@ def _solve_block(
     for q in range(m):
         for c in range(end - first):
             half[q, c] = along[first + c, q]
-        add_blocks(half, q, half, lower, q, 0, q, -1.0)
+        _add_blocks(half, q, half, lower, q, 0, q, -1.0)
         scale = 1.0 / upper[q, q]
-        for c in range(BLOCK):
+        for c in range(_BLOCK):
             half[q, c] *= scale
             turned[c, q] = half[q, c]
     root, across = inner
-    for k in range(BLOCK - 1, -1, -1):
-        for c in range(BLOCK):
+    for k in range(_BLOCK - 1, -1, -1):
+        for c in range(_BLOCK):
             root[k, c] = 1.0 if c == k else 0.0
-        add_blocks(root, k, half, turned, k, 0, m, 1.0)
-        add_blocks(root, k, root, across, k, k + 1, BLOCK, -1.0)
+        _add_blocks(root, k, half, turned, k, 0, m, 1.0)
+        _add_blocks(root, k, root, across, k, k + 1, _BLOCK, -1.0)
         scale = 1.0 / np.sqrt(root[k, k])
-        for c in range(BLOCK):
+        for c in range(_BLOCK):
             root[k, c] *= scale
             across[c, k] = root[k, c]
     for q in range(m - 1, -1, -1):
-        add_blocks(half, q, half, upper, q, q + 1, m, -1.0)
+        _add_blocks(half, q, half, upper, q, q + 1, m, -1.0)
         scale = 1.0 / upper[q, q]
-        for c in range(BLOCK):
+        for c in range(_BLOCK):
             half[q, c] *= scale
             turned[c, q] = half[q, c]
 
@@ -138,15 +140,18 @@ def _solve(factors: tuple[Array, Array], right: Array, run: int) -> float:
 
 
 @compiled
-def _cholesky(matrix: Array, factors: tuple[Array, Array]) -> None:
-    """Write the upper triangular factor U, ``U^T U`` the matrix (m, m), and its transpose."""
-    upper, lower = factors
-    m = len(matrix)
-    for k in range(m):
-        for j in range(np.uint64(k), np.uint64(m)):
-            upper[k, j] = matrix[k, j]
-        add_products(upper, k, upper, lower, k, 0, k, k, -1.0)
-        scale = 1.0 / np.sqrt(upper[k, k])
-        for j in range(np.uint64(k), np.uint64(m)):
-            upper[k, j] *= scale
-            lower[j, k] = upper[k, j]
+def _add_blocks(
+    to: Array, at: int, rows: Array, weights: Array, of: int, first: int, end: int, sign: float
+) -> None:
+    """Do the same where rows are as long as a block."""
+    for c in range(first, end - 3, 4):
+        s, t = sign * weights[of, c], sign * weights[of, c + 1]
+        u, v = sign * weights[of, c + 2], sign * weights[of, c + 3]
+        for r in range(_BLOCK):
+            to[at, r] += (s * rows[c, r] + t * rows[c + 1, r]) + (
+                u * rows[c + 2, r] + v * rows[c + 3, r]
+            )
+    for c in range(end - (end - first) % 4, end):
+        s = sign * weights[of, c]
+        for r in range(_BLOCK):
+            to[at, r] += s * rows[c, r]
