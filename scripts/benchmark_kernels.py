@@ -33,6 +33,7 @@ from debrisest.filters.association.restless import Bank
 from debrisest.filters.association.sensor import updated
 from debrisest.filters.association.update import Scan, Tracks
 from debrisest.filters.association.weights import Validation, probabilistic
+from debrisest.filters.bound.information import Information, gather
 from debrisest.filters.kalman.unscented import unscented
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
@@ -69,6 +70,7 @@ def kernels() -> dict[str, Kernel]:
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
         "descents on known points, 4 arcs of 150 epochs": descents(),
         "unscented filter, 91 states, 20 runs of two epochs": sigma_points(),
+        "bound, 53 unknowns, 20 runs of 16 epochs": bound(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
         **{
             f"association, one sensor of seven detections, {runs} runs": association(runs)
@@ -112,6 +114,15 @@ def sigma_points() -> Kernel:
         return (unscented(model, state, covariance, measured).state,)
 
     return kernel
+
+
+def bound() -> Kernel:
+    """Return the bound of 53 unknowns over 16 epochs of 25 sparse rows."""
+    draws = np.random.default_rng(6)
+    rows = draws.normal(size=(20, 16, 25, 53)) * (np.arange(53) % 3 == 0)
+    residual, moved = draws.normal(size=(20, 16, 25)), draws.normal(size=(20, 16, 17, 17))
+    prior = np.tile(np.eye(53), (20, 1, 1))
+    return lambda: gather(Information(prior.copy(), np.zeros((20, 53))), rows, residual, moved)
 
 
 def of_replay() -> dict[str, Kernel]:

@@ -23,7 +23,7 @@ from debrisest.filters.bound.information import (
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.weights import FALSE_MATCH
 
-_BLOCK = 10  # runs at a time, for the sake of memory
+_BLOCK, _EPOCHS = 10, 50  # runs at a time, for the sake of memory, and epochs
 
 
 class PairedErrors(NamedTuple):
@@ -56,17 +56,16 @@ def efficient(
     ``prior_error (run, n_e)``, first guess minus truth, with its covariance ``(n_e, n_e)``;
     ``keep`` lists the epochs whose covariance is wanted.
     """
-    seen, (runs, epochs) = ~np.isnan(noise), noise.shape[:2]
-    rows = np.where(seen[..., None], derivative / sigma[:, None], 0.0)
-    residual = np.where(seen, noise, 0.0) / sigma
+    runs, epochs = noise.shape[:2]
     moved = _without_what_stays(transition)
     prior = np.linalg.inv(prior_covariance)
     held = Information(np.tile(prior, (runs, 1, 1)), prior_error @ prior)
     kept, found = {}, []
-    for part in parts(epochs, keep, epochs):
-        *errors, kept[part.stop - 1] = gather(
-            held, rows[:, part], residual[:, part], moved[:, part]
-        )
+    for part in parts(epochs, keep, _EPOCHS):
+        seen = ~np.isnan(noise[:, part])
+        rows = np.where(seen[..., None], derivative[:, part] / sigma[:, None], 0.0)
+        residual = np.where(seen, noise[:, part], 0.0) / sigma
+        *errors, kept[part.stop - 1] = gather(held, rows, residual, moved[:, part])
         found.append(errors)
     start = kept[epochs - 1]
     at_start = (start @ held.gradient[..., None])[..., 0]
