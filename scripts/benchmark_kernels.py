@@ -34,7 +34,9 @@ from debrisest.filters.association.sensor import updated
 from debrisest.filters.association.update import Scan, Tracks
 from debrisest.filters.association.weights import Validation, probabilistic
 from debrisest.filters.bound.information import Information, gather
+from debrisest.filters.kalman.extended import extended
 from debrisest.filters.kalman.unscented import unscented
+from debrisest.filters.model import Model
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
@@ -70,6 +72,7 @@ def kernels() -> dict[str, Kernel]:
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
         "descents on known points, 4 arcs of 150 epochs": descents(),
         "unscented filter, 91 states, 20 runs of two epochs": sigma_points(),
+        "iterated filter, 30 states, 100 runs of four epochs": iterated(),
         "bound, 53 unknowns, 20 runs of 16 epochs": bound(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
         **{
@@ -123,6 +126,23 @@ def bound() -> Kernel:
     residual, moved = draws.normal(size=(20, 16, 25)), draws.normal(size=(20, 16, 17, 17))
     prior = np.tile(np.eye(53), (20, 1, 1))
     return lambda: gather(Information(prior.copy(), np.zeros((20, 53))), rows, residual, moved)
+
+
+def iterated() -> Kernel:
+    """Return an iterated filter of 30 errors and 45 components, four epochs long."""
+    draws = np.random.default_rng(7)
+    h = draws.normal(size=(45, 30))
+    model = Model(
+        process=lambda state, _: state,
+        measurement=lambda state, _: state @ h.T,
+        process_noise=np.zeros((30, 30)),
+        measurement_noise=0.1 * np.eye(45),
+        error_names=tuple(map(str, range(30))),
+        process_jacobian=lambda *_: np.eye(30),
+        measurement_jacobian=lambda *_: h,
+    )
+    given = np.zeros((100, 30)), np.tile(np.eye(30), (100, 1, 1)), draws.normal(size=(100, 4, 45))
+    return lambda: (extended(model, *given, iterations=3, stop="relative_norm").state,)
 
 
 def of_replay() -> dict[str, Kernel]:

@@ -28,11 +28,11 @@ def fold(columns: Array, loose: Array, own: int) -> None:
                 made[i, :i] = 0.0
                 for r in range(i, n):
                     made[i, r] = left[i, r]
-            _reflect(made, left, i, min(i + 1, own), sums, shares)
+            reflect(made, left, i, min(i + 1, own), sums, shares)
 
 
 @compiled
-def _reflect(columns: Array, loose: Array, i: int, first: int, sums: Array, shares: Array) -> None:
+def reflect(columns: Array, loose: Array, i: int, first: int, sums: Array, shares: Array) -> None:
     """Turn column i and the loose ones from the first on, so that these lose component i."""
     rest, head, count = 0.0, columns[i, i], len(loose)
     for c in range(first, count):
