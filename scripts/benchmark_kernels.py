@@ -27,6 +27,7 @@ from debrisest.batch.descent import descend_all
 from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.tracks import tracks
 from debrisest.clock import Clock
+from debrisest.dynamics.integrators import rk4_step
 from debrisest.dynamics.log_inertia import log_ratios
 from debrisest.filters.association.evidence import Beside
 from debrisest.filters.association.restless import Bank
@@ -45,6 +46,7 @@ from debrisest.problems.camera_range import redundant_model
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
 from debrisest.problems.stereo_pose.truth import draw_guess
+from debrisest.problems.tumbling import attitude
 
 RATE, MOMENTS = np.radians([7.2, 5.525, -1.624]), np.array([0.618, 0.707, 0.345])
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
@@ -72,6 +74,7 @@ def kernels() -> dict[str, Kernel]:
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
         "descents on known points, 4 arcs of 150 epochs": descents(),
         "unscented filter, 91 states, 20 runs of two epochs": sigma_points(),
+        "unscented filter, 14 states, 100 runs of ten epochs": tumbling(),
         "iterated filter, 30 states, 100 runs of four epochs": iterated(),
         "bound, 53 unknowns, 20 runs of 16 epochs": bound(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
@@ -126,6 +129,25 @@ def bound() -> Kernel:
     residual, moved = draws.normal(size=(20, 16, 25)), draws.normal(size=(20, 16, 17, 17))
     prior = np.tile(np.eye(53), (20, 1, 1))
     return lambda: gather(Information(prior.copy(), np.zeros((20, 53))), rows, residual, moved)
+
+
+def tumbling() -> Kernel:
+    """Return an unscented filter of 14 errors, ten epochs long."""
+    draws = np.random.default_rng(8)
+    state = np.tile(np.append(np.zeros(11), MOMENTS), (100, 1))
+    state[:, [0, 4]], state[:, attitude.RATE] = 1.0, 0.2 * RATE
+    model = Model(
+        process=lambda x, _: attitude.process(x, 1.0, rk4_step),
+        measurement=lambda x, _: attitude.measured_attitude(x),
+        process_noise=1e-6 * np.eye(14),
+        measurement_noise=1e-4 * np.eye(4),
+        error_names=attitude.ERROR_NAMES,
+        retract=attitude.correct,
+        innovation=attitude.sign_free_innovation,
+    )
+    measured = IDENTITY + 1e-2 * draws.normal(size=(100, 10, 4))
+    covariance = np.tile(1e-3 * np.eye(14), (100, 1, 1))
+    return lambda: (unscented(model, state, covariance, measured, redraw=False).state,)
 
 
 def iterated() -> Kernel:

@@ -71,8 +71,8 @@ def extended(
 
     `state` (run, n) and `covariance` (run, n_e, n_e) are the prior of epoch 0, which measurement 0
     updates; `measurements` (run, time, m), NaN = not observed; `keep` lists the epochs whose full
-    covariance is wanted. Process noise is added per step; the covariance update is Joseph's, or where
-    there are loops the square of a root.
+    covariance is wanted. Process noise is added per step; the covariance update is Joseph's, or
+    where there are loops the square of a root.
 
     An update takes up to `iterations` Gauss-Newton steps (Bell and Cathey 1993)
     x_i+1 = x- [+] K_i (nu(y, h(x_i)) - H_i (x- [-] x_i)), linearised at x_i. Every run stops by

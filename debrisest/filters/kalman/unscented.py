@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.kalman.unscented_root import PairRule, unscented_root
@@ -153,6 +154,11 @@ def _update(
     measured = ~np.isnan(y)
     if not measured.all():
         innovation, response, noise = drop_missing(measured, innovation, response, noise)
+    if compiled.available():
+        by_loops = _corrected(rule, predicted, response, innovation, noise)
+        correction, covariance, nis = by_loops
+        covariance += predicted.added_noise
+        return model.retract(predicted.mean, correction), covariance, nis, measured.sum(-1)
     weighted = np.swapaxes(rule.covariance_weights[:, None] * response, -2, -1)
     cross = weighted @ predicted.deviations
     solved = solve(
@@ -166,6 +172,17 @@ def _update(
     )
     nis = (innovation * solved[..., -1]).sum(-1)
     return model.retract(predicted.mean, correction), covariance, nis, measured.sum(-1)
+
+
+def _corrected(
+    rule: _SigmaPointRule, predicted: _Prediction, response: Array, innovation: Array, noise: Array
+) -> tuple[Array, Array, Array]:
+    from debrisest.filters.kalman.sigma_point_loops import corrected
+
+    noises = np.broadcast_to(noise, (len(innovation), *noise.shape[-2:]))
+    given = predicted.deviations, response, innovation, noises, rule.noise_root
+    weights = float(rule.covariance_weights[0]), float(rule.covariance_weights[1])
+    return corrected(weights, *(np.ascontiguousarray(each) for each in given))
 
 
 def _second_moment(rule: _SigmaPointRule, deviations: Array) -> Array:
