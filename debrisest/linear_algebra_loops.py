@@ -1,4 +1,7 @@
-"""Linear algebra of one small positive matrix, for compiled loops."""
+"""Linear algebra of one small positive matrix, for compiled loops.
+
+Indices without a sign let a loop over part of a row become vectors.
+"""
 
 import numpy as np
 
@@ -82,3 +85,49 @@ def mirror(matrix: Array) -> None:
     for a in range(len(matrix)):
         for b in range(a):
             matrix[a, b] = matrix[b, a]
+
+
+@compiled
+def cholesky(matrix: Array, upper: Array, lower: Array) -> None:
+    """Write the upper triangular U, ``U^T U`` the matrix (n, n), and its transpose.
+
+    Only what is on and above the diagonal of the matrix is looked at, and of U written.
+    """
+    n = len(matrix)
+    for k in range(n):
+        for j in range(np.uint64(k), np.uint64(n)):
+            upper[k, j] = matrix[k, j]
+        add_products(upper, k, upper, lower, k, 0, k, k, -1.0)
+        scale = 1.0 / np.sqrt(upper[k, k])
+        for j in range(np.uint64(k), np.uint64(n)):
+            upper[k, j] *= scale
+            lower[j, k] = upper[k, j]
+
+
+@compiled
+def add_products(
+    to: Array,
+    at: int,
+    rows: Array,
+    weights: Array,
+    of: int,
+    first: int,
+    end: int,
+    start: int,
+    sign: float,
+) -> None:
+    """Add rows from the first to the end, by a row of weights, to row ``at``, from its start on.
+
+    Four at a time, since what is added to is then read and written once for them.
+    """
+    for c in range(first, end - 3, 4):
+        s, t = sign * weights[of, c], sign * weights[of, c + 1]
+        u, v = sign * weights[of, c + 2], sign * weights[of, c + 3]
+        for r in range(np.uint64(start), np.uint64(to.shape[1])):
+            to[at, r] += (s * rows[c, r] + t * rows[c + 1, r]) + (
+                u * rows[c + 2, r] + v * rows[c + 3, r]
+            )
+    for c in range(end - (end - first) % 4, end):
+        s = sign * weights[of, c]
+        for r in range(np.uint64(start), np.uint64(to.shape[1])):
+            to[at, r] += s * rows[c, r]

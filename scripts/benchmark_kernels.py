@@ -32,9 +32,14 @@ from debrisest.control.rigid_spacecraft import spacecraft
 from debrisest.control.track import seen_from
 from debrisest.control.two_stage import Controller
 from debrisest.dynamics import kepler
+from debrisest.dynamics.integrators import rk4_step
 from debrisest.dynamics.log_inertia import log_ratios
 from debrisest.filters.association.single import associated
 from debrisest.filters.association.weights import Validation
+from debrisest.filters.bound.information import Information, gather
+from debrisest.filters.kalman.extended import extended
+from debrisest.filters.kalman.unscented import unscented
+from debrisest.filters.model import Model
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
@@ -44,6 +49,7 @@ from debrisest.problems.orbit_from_pixels.model import ObserverGeometry, scan_mo
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
 from debrisest.problems.stereo_pose.truth import draw_guess
+from debrisest.problems.tumbling import attitude
 
 RATE, MOMENTS = np.radians([7.2, 5.525, -1.624]), np.array([0.618, 0.707, 0.345])
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
@@ -70,7 +76,10 @@ def kernels() -> dict[str, Kernel]:
         ),
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
         "descents on known points, 4 arcs of 150 epochs": descents(),
-        "91 states, sigma points of 20 runs moved": sigma_points(),
+        "unscented filter, 91 states, 20 runs of two epochs": sigma_points(),
+        "unscented filter, 14 states, 100 runs of ten epochs": tumbling(),
+        "iterated filter, 30 states, 100 runs of four epochs": iterated(),
+        "bound, 53 unknowns, 20 runs of 16 epochs": bound(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
         **{
             f"association, 30 epochs of three detections, {runs} runs": association(runs)
@@ -96,18 +105,70 @@ def descents() -> Kernel:
 
 
 def sigma_points() -> Kernel:
-    """Return a step of the points of 91 errors, of which four fifths share their core."""
+    """Return a filter of 91 errors, two epochs long."""
     draws = np.random.default_rng(1)
     known = redundant_model.CameraGeometry(points=12, mean_motion=1e-3, step=1.0, focal_px=1000.0)
-    state = np.zeros((20, 183, 91))
-    state[...] = draws.normal(size=(20, 1, 91))
-    state[..., redundant_model.RATE] *= 0.02
-    state[..., redundant_model.POSITION] += [5.0, 17.0, 6.0]
-    state[..., redundant_model.INERTIA] = [135.0, 208.0, 260.0, 5.0, -3.0, 8.0]
-    moved = np.arange(1, 1 + redundant_model.CORE)
-    state[:, moved, moved - 1] += 1e-3
-    state[:, 91 + moved, moved - 1] -= 1e-3
-    return lambda: (redundant_model.process(known, state),)
+    state = draws.normal(size=(20, 91))
+    state[:, redundant_model.RATE] *= 0.02
+    state[:, redundant_model.POSITION] += [5.0, 17.0, 6.0]
+    state[:, redundant_model.INERTIA] = [135.0, 208.0, 260.0, 5.0, -3.0, 8.0]
+    state[:, known.camera_points][:, 2::3] += 20.0
+    covariance = np.tile(1e-4 * np.eye(91), (20, 1, 1))
+    with patch.object(compiled, "available", lambda: True):
+        fast = redundant_model.redundant_model(known, 1.0, 0.01)
+    shown = fast.measurement(state, 0)
+    measured = shown[:, None] + draws.normal(size=(20, 2, 25)) * [*24 * [1.0], 0.01]
+
+    def kernel() -> tuple[Array]:
+        model = fast if compiled.available() else fast._replace(paired=None)
+        return (unscented(model, state, covariance, measured).state,)
+
+    return kernel
+
+
+def bound() -> Kernel:
+    """Return the bound of 53 unknowns over 16 epochs of 25 sparse rows."""
+    draws = np.random.default_rng(6)
+    rows = draws.normal(size=(20, 16, 25, 53)) * (np.arange(53) % 3 == 0)
+    residual, moved = draws.normal(size=(20, 16, 25)), draws.normal(size=(20, 16, 17, 17))
+    prior = np.tile(np.eye(53), (20, 1, 1))
+    return lambda: gather(Information(prior.copy(), np.zeros((20, 53))), rows, residual, moved)
+
+
+def tumbling() -> Kernel:
+    """Return an unscented filter of 14 errors, ten epochs long."""
+    draws = np.random.default_rng(8)
+    state = np.tile(np.append(np.zeros(11), MOMENTS), (100, 1))
+    state[:, [0, 4]], state[:, attitude.RATE] = 1.0, 0.2 * RATE
+    model = Model(
+        process=lambda x, _: attitude.process(x, 1.0, rk4_step),
+        measurement=lambda x, _: attitude.measured_attitude(x),
+        process_noise=1e-6 * np.eye(14),
+        measurement_noise=1e-4 * np.eye(4),
+        error_names=attitude.ERROR_NAMES,
+        retract=attitude.correct,
+        innovation=attitude.sign_free_innovation,
+    )
+    measured = IDENTITY + 1e-2 * draws.normal(size=(100, 10, 4))
+    covariance = np.tile(1e-3 * np.eye(14), (100, 1, 1))
+    return lambda: (unscented(model, state, covariance, measured, redraw=False).state,)
+
+
+def iterated() -> Kernel:
+    """Return an iterated filter of 30 errors and 45 components, four epochs long."""
+    draws = np.random.default_rng(7)
+    h = draws.normal(size=(45, 30))
+    model = Model(
+        process=lambda state, _: state,
+        measurement=lambda state, _: state @ h.T,
+        process_noise=np.zeros((30, 30)),
+        measurement_noise=0.1 * np.eye(45),
+        error_names=tuple(map(str, range(30))),
+        process_jacobian=lambda *_: np.eye(30),
+        measurement_jacobian=lambda *_: h,
+    )
+    given = np.zeros((100, 30)), np.tile(np.eye(30), (100, 1, 1)), draws.normal(size=(100, 4, 45))
+    return lambda: (extended(model, *given, iterations=3, stop="relative_norm").state,)
 
 
 def of_replay() -> dict[str, Kernel]:

@@ -106,6 +106,7 @@ class EstimatesWriter:
     ) -> IntArray:
         """Store the posterior of epoch k of the whole batch; return its members that go on.
 
+        Where no covariance is kept, variances ``(run, n_e)`` are enough.
         `shown` is what to store in place of the state, where parts of it are not to be shown.
         """
         sound, stored = finite(state, covariance), state if shown is None else shown
@@ -122,7 +123,7 @@ class EstimatesWriter:
     def write(self, k: int, state: Array, covariance: Array) -> None:
         """Store state and covariance of the batch, whatever they are."""
         self._state[self.runs, k] = state
-        variance = np.diagonal(covariance, 0, -2, -1)
+        variance = covariance if covariance.ndim == 2 else np.diagonal(covariance, 0, -2, -1)
         self._sigma[self.runs, k] = np.sqrt(np.maximum(variance, 0.0))
         for slot in np.flatnonzero(self._kept == k):
             self._covariance[self.runs, slot] = covariance
@@ -152,7 +153,8 @@ class EstimatesWriter:
 
 def finite(state: Array, matrix: Array) -> BoolArray:
     """Return the runs whose state and matrix are finite."""
-    return np.asarray(np.isfinite(state).all(-1) & np.isfinite(matrix).all((-2, -1)))
+    axes = tuple(range(1, matrix.ndim))
+    return np.asarray(np.isfinite(state).all(-1) & np.isfinite(matrix).all(axes))
 
 
 def _require_shapes(

@@ -16,6 +16,22 @@ def subtract(state: Array, reference: Array) -> Array:
     return state - reference
 
 
+class PairedSteps(NamedTuple):
+    """Functions of a model on pairs of points ``x +- scale l``, compiled, for an unscented filter.
+
+    Columns l of a covariance's root are rows of an array here, ``(run, n, n)``, triangular.
+    """
+
+    move: Callable[[Array, Array, float], Array]
+    """Replaces states (run, n) and columns by what they are a step later. Columns whose pairs move
+    as the state does come last; the others go, to their number c, into an array (run, 2 c, n) that
+    it returns: half the differences of their pairs, and behind these half the sums, less the
+    state; both over the scale."""
+    show: Callable[[Array, Array, float], tuple[Array, Array, Array]]
+    """Returns what states show (run, m), half the differences of what pairs show (run, n, m), and
+    half the sums, less the former; both over the scale."""
+
+
 class Model(NamedTuple):
     """A discrete-time system with additive white noise, seen through an n_e-vector error.
 
@@ -36,6 +52,8 @@ class Model(NamedTuple):
       one may be left out. A filter that needs one that is missing differentiates numerically.
     * `gate_groups` gives every measurement component the number of the group with which a gate
       accepts or rejects it; without it, every component is judged alone.
+    * `paired` does what `process` and `measurement` do for the points of an unscented filter, where
+      errors are added and nothing depends on the epoch.
     * `select(runs)` gives the model of some runs; without it, the model is the same for all.
     """
 
@@ -52,6 +70,7 @@ class Model(NamedTuple):
     process_jacobian: Callable[[Array, int], Array] | None = None
     measurement_jacobian: Callable[[Array, int], Array] | None = None
     gate_groups: tuple[int, ...] | None = None
+    paired: PairedSteps | None = None
     select: Callable[[IntArray], "Model"] | None = None
 
     def of(self, runs: IntArray) -> "Model":

@@ -21,7 +21,7 @@ def experiment(runs, seed):
     noise[:, 0] = np.nan
     noise[:, 4, 1] = np.nan
     transition = np.broadcast_to(transition, (runs, EPOCHS, 2, 2))
-    bound = efficient(transition, derivative, noise, SIGMA, error, PRIOR)
+    bound = efficient(transition, derivative, noise, SIGMA, error, PRIOR, range(EPOCHS))
     return error, noise, bound
 
 
@@ -42,7 +42,7 @@ def test_the_filter_bound_is_the_kalman_filter():
 
 def test_the_smoother_bound_agrees_at_the_end_and_is_better_before():
     _, _, bound = experiment(2, 1)
-    for smoothed, filtered in ((bound[2], bound[0]), (bound[3], bound[1])):
+    for smoothed, filtered in zip(bound[3:], bound[:3]):
         np.testing.assert_allclose(smoothed[:, -1], filtered[:, -1], atol=1e-12)
     gain = np.linalg.eigvalsh(bound.filter_covariance[0] - bound.smoother_covariance[0])
     assert gain.min() > -1e-12
@@ -50,7 +50,7 @@ def test_the_smoother_bound_agrees_at_the_end_and_is_better_before():
 
 def test_the_bound_is_consistent():
     _, _, bound = experiment(2000, 2)
-    for error, covariance in ((bound[0], bound[1]), (bound[2], bound[3])):
+    for error, _, covariance in (bound[:3], bound[3:]):
         for k in (0, 3, EPOCHS - 1):
             squares = normalized_square(error[:, k], covariance[:, k])
             low, high = interval(np.array(2 * len(squares)), 0.9999)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.filters.bound.information import Information, gather, moved_covariance, parts
 from debrisest.filters.landmark_model import LandmarkModel, Observations, Rows
 from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.weights import FALSE_MATCH
@@ -55,31 +56,23 @@ def landmark_bound(
     information = scaled_inverse(covariance)
     offset = np.zeros((runs, n_x + extra))
     offset[:, :n_x] = parameters - model.parameters(core)
-    gradient = (information @ offset[..., None])[..., 0]
+    held = Information(information, (information @ offset[..., None])[..., 0])
     n_e = model.errors + extra
     error, sigma = np.empty((2, runs, epochs, n_e))
     kept = np.empty((runs, len(keep), n_e, n_e))
     squares, dof = np.zeros((2, runs))
-    for first in range(0, epochs, _BLOCK):
-        part = np.arange(first, min(first + _BLOCK, epochs))
-        rows = model.rows(cores[:, part], points[:, None], part)
-        response, residual = _whitened(model, rows, observed.at(slice(None), part))
+    for part in parts(epochs, keep, _BLOCK):
+        at = np.arange(part.start, part.stop)
+        rows = model.rows(cores[:, part], points[:, None], at)
+        response, residual = _whitened(model, rows, observed.at(slice(None), at))
         squares += (residual**2).sum((1, 2))
         dof += (response != 0.0).any(-1).sum((1, 2))
-        for i, k in enumerate(part):
-            by_start = transitions[:, k] @ by_parameters
-            h = np.concatenate(
-                [response[:, i, :, :-extra] @ by_start, response[:, i, :, -extra:]], -1
-            )
-            back = np.swapaxes(h, -1, -2)
-            information = information + back @ h
-            gradient = gradient + (back @ residual[:, i, :, None])[..., 0]
-            inverse = scaled_inverse(information)
-            spread = _moved(by_start, inverse)
-            error[:, k] = _moved_error(by_start, (inverse @ gradient[..., None])[..., 0])
-            sigma[:, k] = np.sqrt(np.diagonal(spread, 0, -2, -1))
-            for slot in np.flatnonzero(np.asarray(keep) == k):
-                kept[:, slot] = spread
+        moved = transitions[:, part] @ by_parameters[:, None]
+        by_core, by_point = np.split(response, [model.errors], axis=-1)
+        h = np.concatenate([by_core @ moved, by_point], axis=-1)
+        error[:, part], sigma[:, part], spread = gather(held, h, residual, moved)
+        for slot in np.flatnonzero(np.asarray(keep) == at[-1]):
+            kept[:, slot] = moved_covariance(moved[:, -1], spread)
     return LandmarkBound(error, sigma, kept, squares, dof)
 
 
@@ -113,20 +106,3 @@ def _whitened(model: LandmarkModel, rows: Rows, observed: Observations) -> tuple
     both = np.linalg.solve(np.linalg.cholesky(noise), both)
     flat[:, :, :count], result[:, :, :count] = both[..., :-1], both[..., -1]
     return flat, result
-
-
-def _moved(by_start: Array, covariance: Array) -> Array:
-    """Covariance of the errors of an epoch from that of the unknowns."""
-    n_x = by_start.shape[-1]
-    top = by_start @ covariance[:, :n_x]
-    corner = top[..., :n_x] @ np.swapaxes(by_start, -1, -2)
-    side = top[..., n_x:]
-    upper = np.concatenate([0.5 * (corner + np.swapaxes(corner, -1, -2)), side], axis=-1)
-    lower = np.concatenate([np.swapaxes(side, -1, -2), covariance[:, n_x:, n_x:]], axis=-1)
-    return np.concatenate([upper, lower], axis=-2)
-
-
-def _moved_error(by_start: Array, error: Array) -> Array:
-    n_x = by_start.shape[-1]
-    core = (by_start @ error[:, :n_x, None])[..., 0]
-    return np.concatenate([core, error[:, n_x:]], axis=-1)

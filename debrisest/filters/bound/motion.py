@@ -12,10 +12,18 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
+from debrisest.filters.bound.information import (
+    Information,
+    gather,
+    moved_covariance,
+    moved_errors,
+    moved_sigma,
+    parts,
+)
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.filters.weights import FALSE_MATCH
 
-_BLOCK = 10  # runs at a time, for the sake of memory
+_BLOCK, _EPOCHS = 10, 50  # runs at a time, for the sake of memory, and epochs
 
 
 class PairedErrors(NamedTuple):
@@ -31,19 +39,6 @@ class PairedErrors(NamedTuple):
     smoother_covariance: Array
 
 
-class Bound(NamedTuple):
-    """Errors of the efficient filter and smoother, estimate minus truth, and their covariances."""
-
-    filter_error: Array
-    """(run, time, n_e): what the measurements up to each epoch allow."""
-    filter_covariance: Array
-    """(run, time, n_e, n_e)."""
-    smoother_error: Array
-    """(run, time, n_e): what all measurements allow."""
-    smoother_covariance: Array
-    """(run, time, n_e, n_e)."""
-
-
 def efficient(
     transition: Array,
     derivative: Array,
@@ -51,30 +46,50 @@ def efficient(
     sigma: Array,
     prior_error: Array,
     prior_covariance: Array,
-) -> Bound:
-    """Return the bound of a batch of runs; mind the memory, and hand over a few runs at a time.
+    keep: Sequence[int] = (),
+) -> PairedErrors:
+    """Return the errors of a batch of runs; mind the memory, and hand over a few runs at a time.
 
     At the truth: ``transition (run, time, n_e, n_e)``, errors of each epoch by those of epoch 0;
     ``derivative (run, time, m, n_e)``, measurements by errors of epoch 0; ``noise (run, time, m)``,
     what was measured minus what the truth shows, NaN where nothing was, with ``sigma (m,)``;
-    ``prior_error (run, n_e)``, first guess minus truth, with its covariance ``(n_e, n_e)``.
+    ``prior_error (run, n_e)``, first guess minus truth, with its covariance ``(n_e, n_e)``;
+    ``keep`` lists the epochs whose covariance is wanted.
     """
-    seen = ~np.isnan(noise)
-    rows = np.where(seen[..., None], derivative, 0.0) / sigma[:, None]
-    residual = np.where(seen, noise, 0.0) / sigma
-    transposed = np.swapaxes(rows, -1, -2)
+    runs, epochs = noise.shape[:2]
+    moved = _without_what_stays(transition)
     prior = np.linalg.inv(prior_covariance)
-    information = np.asarray(prior + np.cumsum(transposed @ rows, axis=1), dtype=np.float64)
-    gradient = (prior_error @ prior)[:, None] + np.cumsum(
-        (transposed @ residual[..., None])[..., 0], axis=1
+    held = Information(np.tile(prior, (runs, 1, 1)), prior_error @ prior)
+    kept, found = {}, []
+    for part in parts(epochs, keep, _EPOCHS):
+        seen = ~np.isnan(noise[:, part])
+        rows = np.where(seen[..., None], derivative[:, part] / sigma[:, None], 0.0)
+        residual = np.where(seen, noise[:, part], 0.0) / sigma
+        *errors, kept[part.stop - 1] = gather(held, rows, residual, moved[:, part])
+        found.append(errors)
+    start = kept[epochs - 1]
+    at_start = (start @ held.gradient[..., None])[..., 0]
+    covariances = np.empty((2, runs, len(keep), *prior.shape))
+    for slot, k in enumerate(keep):
+        covariances[0, :, slot] = moved_covariance(moved[:, k], kept[k])
+        covariances[1, :, slot] = moved_covariance(moved[:, k], start)
+    error, sigma_of_filter = (np.concatenate(each, axis=1) for each in zip(*found))
+    return PairedErrors(
+        error,
+        sigma_of_filter,
+        covariances[0],
+        moved_errors(moved, at_start[:, None]),
+        moved_sigma(moved, start[:, None]),
+        covariances[1],
     )
-    start_covariance = _scaled_inverse(information)
-    start_error = (start_covariance @ gradient[..., None])[..., 0]
-    last = slice(-1, None)
-    return Bound(
-        *_moved(transition, start_error, start_covariance),
-        *_moved(transition, start_error[:, last], start_covariance[:, last]),
-    )
+
+
+def _without_what_stays(transition: Array) -> Array:
+    """The leading block, outside of which errors stay what they are."""
+    n = transition.shape[-1]
+    moves = (transition != np.eye(n)).any((0, 1))
+    own = int(np.flatnonzero(moves.any(0) | moves.any(1)).max(initial=-1)) + 1
+    return transition[..., :own, :own]
 
 
 def paired_errors(
@@ -105,31 +120,11 @@ def paired_errors(
             model.sigma,
             part.plain_difference(prior[runs], truth[runs]),
             covariance,
+            keep,
         )
-        blocks.append(
-            [
-                *(bound[0], _sigma(bound[1]), bound[1][:, list(keep)]),
-                *(bound[2], _sigma(bound[3]), bound[3][:, list(keep)]),
-            ]
-        )
+        blocks.append(bound)
     return PairedErrors(*(np.concatenate(parts) for parts in zip(*blocks)))
 
 
 def _without_outliers(noise: Array, sigma: Array) -> Array:
     return np.where(np.abs(noise) > FALSE_MATCH * sigma, np.nan, noise)
-
-
-def _sigma(covariance: Array) -> Array:
-    return np.asarray(np.sqrt(np.diagonal(covariance, 0, -2, -1)))
-
-
-def _moved(transition: Array, error: Array, covariance: Array) -> tuple[Array, Array]:
-    moved = transition @ covariance @ np.swapaxes(transition, -1, -2)
-    return (transition @ error[..., None])[..., 0], 0.5 * (moved + np.swapaxes(moved, -1, -2))
-
-
-def _scaled_inverse(matrix: Array) -> Array:
-    """Inverse of a positive matrix whose unknowns differ by orders of magnitude."""
-    scale = np.diagonal(matrix, 0, -2, -1) ** -0.5
-    both = scale[..., :, None] * scale[..., None, :]
-    return np.asarray(both * np.linalg.inv(both * matrix))

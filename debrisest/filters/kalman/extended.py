@@ -5,6 +5,7 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray, Data, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
 from debrisest.filters.gate import Gate, Gatekeeper
@@ -24,6 +25,8 @@ class _UpdateSettings(NamedTuple):
     iterations: int
     tolerance: float
     stop: Stop
+    loops: bool
+    """Whether steps are compiled, which want noises that are independent."""
 
 
 class _Prior(NamedTuple):
@@ -41,10 +44,12 @@ class _Prior(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """One Gauss-Newton step: H^T, K^T, the correction of x-, the posterior's variances, NIS."""
+    """One Gauss-Newton step: the correction of x-, the posterior's variances, NIS.
 
-    response: Array
-    gain: Array
+    Its posterior follows from two more, H^T and K^T or what loops give.
+    """
+
+    parts: tuple[Array, Array]
     correction: Array
     variance: Array
     nis: Array
@@ -66,7 +71,8 @@ def extended(
 
     `state` (run, n) and `covariance` (run, n_e, n_e) are the prior of epoch 0, which measurement 0
     updates; `measurements` (run, time, m), NaN = not observed; `keep` lists the epochs whose full
-    covariance is wanted. Process noise is added per step; the covariance update is Joseph's.
+    covariance is wanted. Process noise is added per step; the covariance update is Joseph's, or
+    where there are loops the square of a root.
 
     An update takes up to `iterations` Gauss-Newton steps (Bell and Cathey 1993)
     x_i+1 = x- [+] K_i (nu(y, h(x_i)) - H_i (x- [-] x_i)), linearised at x_i. Every run stops by
@@ -85,7 +91,7 @@ def extended(
     what the last step leaves of the cost: linearised at x-, a far prior gives a figure that says
     nothing of the fit.
     """
-    settings = _settings(iterations, tolerance, stop)
+    settings = _settings(model, iterations, tolerance, stop)
     epochs, components = measurements.shape[1:]
     keeper = None if gate is None else Gatekeeper(gate, model.gate_groups, covariance, components)
     counts, totals = {"updates": 0}, ["repairs"]
@@ -111,13 +117,15 @@ def extended(
     return writer.estimates()
 
 
-def _settings(iterations: int, tolerance: float, stop: Stop) -> _UpdateSettings:
+def _settings(model: Model, iterations: int, tolerance: float, stop: Stop) -> _UpdateSettings:
     if iterations < 1 or not tolerance > 0.0 or stop not in get_args(Stop):
         raise ValueError(
             f"at least one iteration, a positive tolerance and one of {get_args(Stop)} are "
             f"needed, not {iterations}, {tolerance} and {stop!r}"
         )
-    return _UpdateSettings(iterations, tolerance, stop)
+    variance = np.diagonal(model.measurement_noise)
+    independent = bool((np.diag(variance) == model.measurement_noise).all() and variance.all())
+    return _UpdateSettings(iterations, tolerance, stop, independent and compiled.available())
 
 
 def _predict(model: Model, state: Array, covariance: Array, k: int) -> tuple[Array, Array]:
@@ -135,11 +143,11 @@ def _update(
     counts: Data = {}
     if keeper is not None:
         prior, counts["reopened"] = _gated(model, keeper, prior, innovation, response)
-    step = _step(model, prior, innovation, response)
+    step = _step(model, settings, prior, innovation, response)
     state, counts["updates"] = _iterate(model, settings, prior, step)
     counts |= {"nis": step.nis, "nis_dof": prior.used.sum(-1)}
     counts["rejected"] = (measured & ~prior.used).sum(-1)
-    return state, _joseph(model, prior, step), counts
+    return state, _posterior(model, settings, prior, step), counts
 
 
 def _linearise(model: Model, prior: _Prior, state: Array) -> tuple[Array, Array]:
@@ -159,9 +167,13 @@ def _gated(
     return prior, verdict.reopened.astype(np.int64)
 
 
-def _step(model: Model, prior: _Prior, nu: Array, response: Array) -> _Step:
+def _step(
+    model: Model, settings: _UpdateSettings, prior: _Prior, nu: Array, response: Array
+) -> _Step:
     """Step by innovation and transposed Jacobian, without the components that are not used."""
     used, covariance = prior.used, prior.covariance
+    if settings.loops:
+        return _compiled_step(model, settings, prior, nu, response)
     h_t, noise = np.copy(response), model.measurement_noise
     if not used.all():
         nu, h_t, noise = drop_missing(used, nu, h_t, noise)
@@ -173,12 +185,25 @@ def _step(model: Model, prior: _Prior, nu: Array, response: Array) -> _Step:
     variance = np.diagonal(covariance, 0, -2, -1)
     left = variance - (np.swapaxes(cross, -2, -1) * gain).sum(-2)
     return _Step(
-        response=h_t,
-        gain=gain,
+        parts=(h_t, gain),
         correction=(nu[:, None] @ gain)[:, 0],
         variance=np.maximum(left, _SMALLEST_RATIO * variance),
         nis=(nu * solved[..., -1]).sum(-1),
     )
+
+
+def _compiled_step(
+    model: Model, settings: _UpdateSettings, prior: _Prior, nu: Array, response: Array
+) -> _Step:
+    from debrisest.filters.kalman.gauss_newton_loops import posterior, whitened_step
+
+    sigma = np.sqrt(np.diagonal(model.measurement_noise))
+    h = np.ascontiguousarray(np.swapaxes(response, -2, -1))
+    correction, nis, root, factor = whitened_step(prior.covariance, h, sigma, prior.used, nu)
+    variance = np.zeros_like(correction)
+    if settings.stop == "scaled" and settings.iterations > 1:
+        variance[:] = np.diagonal(posterior(root.copy(), factor), 0, -2, -1)
+    return _Step((root, factor), correction, variance, nis)
 
 
 def _iterate(
@@ -192,7 +217,7 @@ def _iterate(
         innovation, response = _linearise(part, here, at)
         lag = part.difference(here.state, at)
         residual = innovation - (lag[:, None] @ response)[:, 0]
-        put(step, runs, _step(part, here, residual, response))
+        put(step, runs, _step(part, settings, here, residual, response))
 
     def moved(before: Array) -> BoolArray:
         """Whether a step was not short; a run that is not finite ends there."""
@@ -207,11 +232,15 @@ def _iterate(
     return model.retract(prior.state, step.correction), count
 
 
-def _joseph(model: Model, prior: _Prior, step: _Step) -> Array:
+def _posterior(model: Model, settings: _UpdateSettings, prior: _Prior, step: _Step) -> Array:
     """(I - K H) P (I - K H)^T + K R K^T; the gain of a component not used is zero."""
-    kept = np.eye(step.response.shape[-2]) - step.response @ step.gain
+    if settings.loops:
+        from debrisest.filters.kalman.gauss_newton_loops import posterior
+
+        return posterior(*step.parts)
+    response, gain = step.parts
+    kept = np.eye(response.shape[-2]) - response @ gain
     spread = np.swapaxes(kept, -2, -1) @ prior.covariance @ kept
-    gain = step.gain
     return _symmetric(spread + np.swapaxes(gain, -2, -1) @ (model.measurement_noise @ gain))
 
 

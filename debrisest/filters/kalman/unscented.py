@@ -5,8 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
+from debrisest.filters.kalman.unscented_root import PairRule, unscented_root
 from debrisest.filters.linear_algebra import solve, square_root
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.model import Model, add, subtract
@@ -66,9 +68,13 @@ def unscented(
       symmetric, and positive when the weights are.
 
     Points are drawn by addition unless the model has its own `difference`, in which case its
-    `retract` draws them; the corrected state is always `retract(x, K nu)`.
+    `retract` draws them; the corrected state is always `retract(x, K nu)`. A model's compiled
+    steps of pairs do the same by `unscented_root`.
     """
     rule = _rule(model, covariance.shape[-1], spread)
+    pairs = PairRule(rule.scale, spread.beta - spread.alpha**2)
+    if redraw and model.paired and pairs.positive(covariance.shape[-1]):
+        return unscented_root(model, model.paired, pairs, state, covariance, measurements, keep)
     epochs = measurements.shape[1]
     names = model.error_names
     writer = EstimatesWriter(names, state, covariance, epochs, keep, totals=["repairs"])
@@ -148,6 +154,11 @@ def _update(
     measured = ~np.isnan(y)
     if not measured.all():
         innovation, response, noise = drop_missing(measured, innovation, response, noise)
+    if compiled.available():
+        by_loops = _corrected(rule, predicted, response, innovation, noise)
+        correction, covariance, nis = by_loops
+        covariance += predicted.added_noise
+        return model.retract(predicted.mean, correction), covariance, nis, measured.sum(-1)
     weighted = np.swapaxes(rule.covariance_weights[:, None] * response, -2, -1)
     cross = weighted @ predicted.deviations
     solved = solve(
@@ -161,6 +172,17 @@ def _update(
     )
     nis = (innovation * solved[..., -1]).sum(-1)
     return model.retract(predicted.mean, correction), covariance, nis, measured.sum(-1)
+
+
+def _corrected(
+    rule: _SigmaPointRule, predicted: _Prediction, response: Array, innovation: Array, noise: Array
+) -> tuple[Array, Array, Array]:
+    from debrisest.filters.kalman.sigma_point_loops import corrected
+
+    noises = np.broadcast_to(noise, (len(innovation), *noise.shape[-2:]))
+    given = predicted.deviations, response, innovation, noises, rule.noise_root
+    weights = float(rule.covariance_weights[0]), float(rule.covariance_weights[1])
+    return corrected(weights, *(np.ascontiguousarray(each) for each in given))
 
 
 def _second_moment(rule: _SigmaPointRule, deviations: Array) -> Array:

@@ -1,107 +1,153 @@
-"""The step of `redundant_model` as plain loops over sigma points, for `debrisest.compiled`."""
+"""The step of `redundant_model` as plain loops over pairs of points, for `debrisest.compiled`."""
 
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.attitude.rotation_loops import conjugate, matrix_of, product
 from debrisest.compiled import compiled
-from debrisest.dynamics.tumbling_in_orbit_loops import slopes
-
-_CORE = 19
-_PARTS, _WEIGHTS = (0.5, 0.5, 1.0, 0.0), (1.0, 2.0, 2.0, 1.0)
+from debrisest.problems.camera_range.redundant_motion_loops import BODY, CORE, LANES, moved_core
 
 
 @compiled
-def moved(states: Array, orbit: Array, pace: tuple[float, float], duration: float) -> Array:
-    """Return states ``(run, copy, n)`` one step later.
-
-    ``orbit (6, 6)`` is the transition of position and velocity, ``pace`` the mean motion and three
-    times its square. Copies with the core of the first one are moved by that one's motion.
-    """
-    result = states.copy()
-    points = (states.shape[2] - _CORE) // 6
-    turned, first = np.empty((3, 3)), np.empty((3, 3))
-    for run in range(len(states)):
-        receding = nearest = 0.0
-        for copy in range(states.shape[1]):
-            state, new = states[run, copy], result[run, copy]
-            if copy > 0 and np.all(state[:_CORE] == states[run, 0, :_CORE]):
-                new[:_CORE], turned[:], receding = result[run, 0, :_CORE], first, nearest
-            else:
-                receding = _core_step(state, orbit, pace, duration, new, turned)
-            if copy == 0:
-                first[:], nearest = turned, receding
-            for i in range(_CORE, _CORE + 3 * points, 3):
-                x, y, z = state[i], state[i + 1], state[i + 2]
-                seen = new[i + 3 * points : i + 3 * points + 3]
-                for a in range(3):
-                    seen[a] += turned[a, 0] * x + turned[a, 1] * y + turned[a, 2] * z
-                seen[2] += receding
-    return result
-
-
-@compiled
-def _core_step(
+def moved_pairs(
     state: Array,
+    columns: Array,
+    scale: float,
     orbit: Array,
     pace: tuple[float, float],
     duration: float,
-    new: Array,
-    turned: Array,
-) -> float:
-    """Write the core one step later and how its rotation matrix changes; how far it recedes."""
-    before = state[:4] / np.sqrt(np.sum(state[:4] ** 2))
-    for a in range(6):
-        new[7 + a] = 0.0
-        for b in range(6):
-            new[7 + a] += orbit[a, b] * state[7 + b]
-    x = np.empty(7)
-    x[:4], x[4:] = product(_camera(state[7:10]), before), state[4:7]
-    _turned(x, _body(state[13:19]), pace, duration)
-    after = product(conjugate(_camera(new[7:10])), x[:4])
-    if np.sum(after * before) < 0.0:
-        after = -after
-    new[:4], new[4:7] = after, x[4:]
-    turned[:] = matrix_of(after) - matrix_of(before)
-    return float(np.sqrt(np.sum(new[7:10] ** 2)) - np.sqrt(np.sum(state[7:10] ** 2)))
+) -> Array:
+    """Move states (run, n) and their columns (run, n, n) by one step; see `PairedSteps.move`.
+
+    ``orbit (6, 6)`` is the transition of position and velocity, ``pace`` the mean motion and three
+    times its square.
+    """
+    runs, n = state.shape
+    loose = np.zeros((runs, 2 * CORE, n))
+    core, new, turned = np.empty(CORE * LANES), np.empty(BODY * LANES), np.empty(10 * LANES)
+    for run in range(runs):
+        _drawn(state[run], columns[run], scale, core)
+        moved_core(core, orbit, pace, duration, new, turned)
+        _spread(state[run], columns[run], scale, new, turned, loose[run])
+    return loose
 
 
 @compiled
-def _turned(
-    x: Array, body: tuple[Array, Array, Array], pace: tuple[float, float], duration: float
+def _drawn(state: Array, columns: Array, scale: float, core: Array) -> None:
+    """Write the core of all points."""
+    for i in range(CORE):
+        for t in range(LANES):
+            core[i * LANES + t] = state[i]
+        for j in range(CORE):
+            core[i * LANES + 1 + j] += scale * columns[j, i]
+            core[i * LANES + 1 + CORE + j] -= scale * columns[j, i]
+
+
+@compiled
+def _spread(
+    state: Array, columns: Array, scale: float, new: Array, turned: Array, loose: Array
 ) -> None:
-    """Move attitude and rate (7) by a Runge-Kutta step."""
-    start, tried, slope, radial = x.copy(), x.copy(), np.empty(7), np.empty(3)
-    room = np.empty(3), np.empty(3), np.empty(3)
-    for i in range(4):
-        slopes(tried, body, pace, slope[:4], slope[4:], radial, room)
-        tried[:] = start + _PARTS[i] * duration * slope
-        x += _WEIGHTS[i] * duration / 6.0 * slope
-    x[:4] /= np.sqrt(np.sum(x[:4] ** 2))
+    """Write what pairs become; move the other columns, and the state, by the state's own motion."""
+    n = len(state)
+    last = (n + CORE) // 2
+    odd, mean, even = np.empty(10), np.empty(10), np.empty(10)
+    for j in range(CORE):
+        for i in range(BODY):
+            loose[j, i], _, loose[CORE + j, i] = _halves(new, i, j, scale)
+        for i in range(BODY, last):
+            loose[j, i] = columns[j, i]
+        for a in range(10):
+            odd[a], mean[a], even[a] = _halves(turned, a, j, scale)
+        _spread_points(state, columns[j], (scale, odd, mean, even), loose[j], loose[CORE + j])
+    for a in range(9):
+        mean[a] = turned[a * LANES]
+    for j in range(CORE, last):
+        _carry(columns[j], mean, j - (j - CORE) % 3)
+    _carry(state, mean, CORE)
+    for i in range(BODY):
+        state[i] = new[i * LANES]
+    for r in range(last + 2, n, 3):
+        state[r] += turned[9 * LANES]
 
 
 @compiled
-def _body(elements: Array) -> tuple[Array, Array, Array]:
-    """Tensor (3, 3) of its elements (6), its inverse, and no derivative."""
-    xx, yy, zz, xy, xz, yz = elements
-    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    inverse = np.empty((3, 3))
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
+def _halves(values: Array, i: int, j: int, scale: float) -> tuple[float, float, float]:
+    """Half the difference of a pair, half its sum, and that without the state's, by the scale."""
+    at, up = values[i * LANES], values[i * LANES + 1 + j]
+    down = values[i * LANES + 1 + CORE + j]
+    return 0.5 * (up - down) / scale, 0.5 * (up + down), (0.5 * (up + down) - at) / scale
+
+
+@compiled
+def _spread_points(
+    state: Array,
+    column: Array,
+    turned: tuple[float, Array, Array, Array],
+    up: Array,
+    beside: Array,
+) -> None:
+    """Write half the differences, and half the sums, of what a pair's points are in the camera."""
+    scale, odd, mean, even = turned
+    half = (len(state) - CORE) // 2
+    for p in range(CORE, CORE + half, 3):
+        x, y, z = state[p], state[p + 1], state[p + 2]
+        u, v, w = scale * column[p], scale * column[p + 1], scale * column[p + 2]
         for a in range(3):
-            b, c = (a + 1) % 3, (a + 2) % 3
-            inverse[a, i] = inertia[j, b] * inertia[k, c] - inertia[j, c] * inertia[k, b]
-    inverse /= np.sum(inertia[0] * inverse[:, 0])
-    return inertia, inverse, inertia
+            r, b = p + half + a, 3 * a
+            up[r] = column[r] + odd[b] * x + odd[b + 1] * y + odd[b + 2] * z
+            up[r] += (mean[b] * u + mean[b + 1] * v + mean[b + 2] * w) / scale
+            beside[r] = even[b] * x + even[b + 1] * y + even[b + 2] * z
+            beside[r] += odd[b] * u + odd[b + 1] * v + odd[b + 2] * w
+        up[p + half + 2] += odd[9]
+        beside[p + half + 2] += even[9]
 
 
 @compiled
-def _camera(position: Array) -> Array:
-    """Attitude (4) of `camera_axes`: two half turns."""
-    x, y, z = position
-    level = np.sqrt(x * x + y * y)
-    azimuth, elevation = np.arctan2(y, x), np.arctan2(z, level)
-    half = 0.5 * (azimuth + 0.5 * np.pi)
-    about = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
-    half = -0.5 * (elevation + 0.5 * np.pi)
-    return product(about, np.array([np.cos(half), np.sin(half), 0.0, 0.0]))
+def _carry(row: Array, turned: Array, first: int) -> None:
+    """Add what points in the body, from the first on, become to those in the camera."""
+    half = (len(row) - CORE) // 2
+    for p in range(first, CORE + half, 3):
+        x, y, z = row[p], row[p + 1], row[p + 2]
+        for a in range(3):
+            row[p + half + a] += turned[3 * a] * x + turned[3 * a + 1] * y + turned[3 * a + 2] * z
+
+
+@compiled
+def shown_pairs(
+    state: Array, columns: Array, scale: float, focal: float
+) -> tuple[Array, Array, Array]:
+    """What states (run, n) and pairs along their columns show; see `PairedSteps.show`."""
+    runs, n = state.shape
+    first, half, m = (n + CORE) // 2, 0.5 / scale, (n - CORE) // 3 + 1
+    shown, odd, even = np.empty((runs, m)), np.zeros((runs, n, m)), np.zeros((runs, n, m))
+    for run in range(runs):
+        at, along, beside = state[run], odd[run], even[run]
+        for i in range(m // 2):
+            shown[run, 2 * i], shown[run, 2 * i + 1] = _pixel(at, at, first + 3 * i, 0.0, focal)
+        shown[run, m - 1] = _range(at, at, 0.0)
+        for j in range(n):
+            column, q = columns[run, j], max(0, 2 * ((j - first) // 3))
+            for r in range(first + 3 * q // 2, n, 3):
+                x, y = _pixel(at, column, r, scale, focal)
+                u, v = _pixel(at, column, r, -scale, focal)
+                along[j, q], beside[j, q] = x - u, x + u
+                along[j, q + 1], beside[j, q + 1] = y - v, y + v
+                q += 2
+            far, near = _range(at, column, scale), _range(at, column, -scale)
+            along[j, m - 1], beside[j, m - 1] = far - near, far + near
+            for q in range(max(0, 2 * ((j - first) // 3)), m):
+                along[j, q] *= half
+                beside[j, q] = half * (beside[j, q] - 2.0 * shown[run, q])
+    return shown, odd, even
+
+
+@compiled
+def _pixel(at: Array, column: Array, r: int, scale: float, focal: float) -> tuple[float, float]:
+    """Image of the point that begins at component r."""
+    ahead = focal / (at[r + 2] + scale * column[r + 2])
+    return (at[r] + scale * column[r]) * ahead, (at[r + 1] + scale * column[r + 1]) * ahead
+
+
+@compiled
+def _range(at: Array, column: Array, scale: float) -> float:
+    x, y, z = at[7] + scale * column[7], at[8] + scale * column[8], at[9] + scale * column[9]
+    return float(np.sqrt(x * x + y * y + z * z))

@@ -21,7 +21,7 @@ from debrisest.attitude import quaternion
 from debrisest.dynamics.clohessy_wiltshire import transition
 from debrisest.dynamics.pointing import camera_axes
 from debrisest.dynamics.tumbling_in_orbit import Body, step
-from debrisest.filters.model import Model
+from debrisest.filters.model import Model, PairedSteps
 from debrisest.sensors import pinhole
 
 Q, RATE, POSITION, VELOCITY = slice(0, 4), slice(4, 7), slice(7, 10), slice(10, 13)
@@ -71,6 +71,7 @@ def redundant_model(
         measurement_noise=np.diag(noise),
         error_names=error_names(known.points),
         retract=_correct,
+        paired=_paired(known) if compiled.available() else None,
     )
 
 
@@ -97,8 +98,6 @@ def process(known: CameraGeometry, state: Array) -> Array:
     """
     if state.ndim != 3:
         return _moved(known, state[..., None, :], state[..., None, :])[..., 0, :]
-    if compiled.available():
-        return _moved_compiled(known, state)
     core = state[..., :CORE]
     own = np.append(True, (core[:, 1:] != core[:, :1]).any((0, 2)))
     result = np.empty_like(state)
@@ -108,11 +107,15 @@ def process(known: CameraGeometry, state: Array) -> Array:
     return result
 
 
-def _moved_compiled(known: CameraGeometry, state: Array) -> Array:
-    from debrisest.problems.camera_range.redundant_loops import moved
+def _paired(known: CameraGeometry) -> PairedSteps:
+    from debrisest.problems.camera_range.redundant_loops import moved_pairs, shown_pairs
 
+    orbit = transition(known.mean_motion, known.step)
     pace = known.mean_motion, 3.0 * known.mean_motion**2
-    return moved(state, transition(known.mean_motion, known.step), pace, known.step)
+    return PairedSteps(
+        move=lambda x, columns, scale: moved_pairs(x, columns, scale, orbit, pace, known.step),
+        show=lambda x, columns, scale: shown_pairs(x, columns, scale, known.focal_px),
+    )
 
 
 def _moved(known: CameraGeometry, leader: Array, state: Array) -> Array:

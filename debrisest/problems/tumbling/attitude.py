@@ -14,10 +14,12 @@ from typing import Literal
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, Data
 from debrisest.attitude import quaternion
 from debrisest.clock import Clock
 from debrisest.dynamics.integrators import Integrator, euler_step, rk4_step
+from debrisest.dynamics.substeps import LARGEST_TURN, MOST
 from debrisest.filters.estimates import Estimates
 from debrisest.filters.model import Model
 from debrisest.problems.tumbling.score import scores
@@ -35,6 +37,11 @@ LEAST_MOMENT = 0.02
 
 def process(state: Array, step: float, integrator: Integrator) -> Array:
     """Return the states (..., 14) after ``step`` seconds; offset and moments do not change."""
+    if integrator is rk4_step and compiled.available():
+        from debrisest.problems.tumbling.attitude_loops import moved
+
+        flat = np.ascontiguousarray(state).reshape(-1, 14)
+        return moved(flat, step, LEAST_MOMENT, LARGEST_TURN, MOST).reshape(state.shape)
     last = state.ndim - 1
     following = np.array(state.transpose(last, *range(last)), order="C")
     moments = following[MOMENTS]
