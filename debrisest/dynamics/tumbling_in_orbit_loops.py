@@ -23,6 +23,7 @@ def rotation(
     duration: float,
     last: int,
     count: int,
+    sensitive: bool,
 ) -> tuple[Array, Array]:
     """Return attitude and rate (run, last + 1, 7), and their errors by those of epoch 0.
 
@@ -30,7 +31,10 @@ def rotation(
     is the mean motion and three times its square, zero without gravity; an epoch has ``count``
     steps of the duration, s.
     """
-    moved, errors = np.empty((len(start), last + 1, 7)), np.empty((len(start), last + 1, 6, 11))
+    moved, errors = (
+        np.empty((len(start), last + 1, 7)),
+        np.empty((len(start), (last + 1) * sensitive, 6, 11)),
+    )
     slope, radial = np.empty(7), np.empty(3)
     turn, spin = slope[:4], slope[4:]
     by, at, total = np.empty((6, 11)), np.empty((6, 11)), np.empty((6, 11))
@@ -41,19 +45,22 @@ def rotation(
         x, new, tried, now = start[run].copy(), np.empty(7), np.empty(7), np.eye(6, 11)
         for k in range(last * count + 1):
             if k % count == 0:
-                moved[run, k // count], errors[run, k // count] = x, now
+                moved[run, k // count] = x
+                if sensitive:
+                    errors[run, k // count] = now
             if k == last * count:
                 break
             new[:], tried[:] = x, x
             total[:], at[:] = now, now
             for i in range(4):
                 slopes(tried, body, pace, turn, spin, radial, vectors)
-                _variation(tried[4:], radial, spin, body, pace[1], at, by, vectors, room)
+                if sensitive:
+                    _variation(tried[4:], radial, spin, body, pace[1], at, by, vectors, room)
                 part, weight = _PARTS[i] * duration, _WEIGHTS[i] * duration / 6.0
                 for a in range(7):
                     tried[a] = x[a] + part * slope[a]
                     new[a] += weight * slope[a]
-                for a in range(6):
+                for a in range(6 * sensitive):
                     for b in range(11):
                         total[a, b] += weight * by[a, b]
                         at[a, b] = now[a, b] + part * by[a, b]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from debrisest import compiled
-from debrisest.problems.camera_range import model, redundant_model
+from debrisest.problems.camera_range import course, model, redundant_model
 
 pytest.importorskip("numba")
 
@@ -24,7 +24,7 @@ def test_rotation_is_the_same(monkeypatch: pytest.MonkeyPatch, gravity: bool, co
     found = []
     for fast in (True, False):
         monkeypatch.setattr(compiled, "available", lambda fast=fast: fast)
-        found.append(model._rotation(known, core, 200, count))
+        found.append(course.rotation(known, core, 200, count))
     for fast, slow in zip(*found):
         np.testing.assert_allclose(fast, slow, atol=1e-12 * np.abs(slow).max())
 

@@ -132,11 +132,11 @@ def _linearise(
     count = landmarks * each
     m = count + model.common
     response = np.zeros((runs, m, n_c + 3 * landmarks))
-    response[:, :count, :n_c] = rows.by_core.reshape(runs, count, n_c)
+    response[:, :count, model.shown_by] = rows.by_core.reshape(runs, count, -1)
     row = np.arange(count).reshape(landmarks, each, 1)
     column = n_c + np.arange(3 * landmarks).reshape(landmarks, 1, 3)
     response[:, row, column] = rows.by_point[:, 0]
-    response[:, count:, :n_c] = rows.common_by_core[:, 0]
+    response[:, count:, model.shown_by] = rows.common_by_core[:, 0]
     innovation = np.concatenate(
         [
             (observed.shown - rows.shown[:, 0]).reshape(runs, count),

@@ -10,6 +10,7 @@ from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics.pointing import camera_axes
 from debrisest.filters.landmark_model import LandmarkModel, Rows
+from debrisest.problems.camera_range import course
 from debrisest.problems.camera_range import model as motion
 from debrisest.problems.camera_range.gauge import turn_of_axes
 from debrisest.problems.camera_range.model import (
@@ -27,6 +28,8 @@ from debrisest.sensors import pinhole
 
 _NEAREST = 0.5
 """Depth, m, in place of a smaller or negative one, which no camera shows."""
+TURN, SHIFT = slice(0, 3), slice(3, 6)
+"""Attitude and position among the errors that rows depend on; constants of sensors follow."""
 
 
 def landmark_model(known: CameraRangeGeometry) -> LandmarkModel:
@@ -41,18 +44,20 @@ def landmark_model(known: CameraRangeGeometry) -> LandmarkModel:
         sigma=np.append(pixel, known.range_sigma) if ranged else pixel,
         common_sigma=np.full(int(not ranged), known.range_sigma),
         error_names=error_names(known),
+        shown_by=np.r_[ATTITUDE_ERROR, POSITION_ERROR, CORE_ERRORS : CORE_ERRORS + known.extras],
         start=lambda parameters: motion.start(known, parameters),
         parameters=lambda core: core[..., 4:].copy(),
         mirror=motion.mirror,
-        trajectory=lambda core, last: motion.trajectory(known, core, last),
-        process=lambda core: motion.process(known, core),
+        path=lambda core, last: course.path(known, core, last),
+        course=lambda parameters, frames: course.course(known, parameters, frames),
+        trajectory=lambda core, last: course.trajectory(known, core, last),
+        process=lambda core: course.process(known, core),
         rows=lambda cores, points, epochs: rows(known, cores, points, epochs),
         place=lambda cores, shown, epochs: place(known, cores, shown, epochs),
         retract=motion.retract,
         difference=motion.difference,
         of=lambda runs: landmark_model(known.of(runs)),
         gauge=turn_of_axes,
-        shown_by=np.r_[ATTITUDE_ERROR, POSITION_ERROR, CORE_ERRORS : CORE_ERRORS + known.extras],
     )
 
 
@@ -63,10 +68,10 @@ def rows(known: CameraRangeGeometry, cores: Array, points: Array, epochs: IntArr
     point[..., 2] = np.maximum(point[..., 2], _NEAREST)
     by_point = pinhole.derivative_through(point, known.focal, turn[..., None, :, :])
     by_position = _by_position(known, cores, to_camera, arm)
-    n_c = CORE_ERRORS + known.extras
-    by_core = np.zeros((*by_point.shape[:-1], n_c))
-    by_core[..., ATTITUDE_ERROR] = cross(points[..., None, :], by_point)
-    by_core[..., POSITION_ERROR] = pinhole.derivative_through(point, known.focal, by_position)
+    errors = 6 + known.extras
+    by_core = np.zeros((*by_point.shape[:-1], errors))
+    by_core[..., TURN] = cross(points[..., None, :], by_point)
+    by_core[..., SHIFT] = pinhole.derivative_through(point, known.focal, by_position)
     noisy, by_bias = known.attitude_sigma > 0.0, by_point[..., :0]
     if noisy or known.camera_bias:
         by_bias = pinhole.derivative_through(point, known.focal, matrix_of_cross(point))
@@ -77,7 +82,7 @@ def rows(known: CameraRangeGeometry, cores: Array, points: Array, epochs: IntArr
         by_core=by_core,
         by_point=by_point,
         common=np.zeros((*cores.shape[:-1], 0)),
-        common_by_core=np.zeros((*cores.shape[:-1], 0, n_c)),
+        common_by_core=np.zeros((*cores.shape[:-1], 0, errors)),
         shared=known.attitude_sigma * by_bias if noisy else by_bias[..., :0],
     )
     if known.range_model == "landmark":
@@ -121,9 +126,9 @@ def _with_range(known: CameraRangeGeometry, found: Rows, cores: Array) -> Rows:
     rho = cores[..., POSITION]
     distance = np.linalg.norm(rho, axis=-1, keepdims=True)
     by_core = np.zeros((*distance.shape, found.by_core.shape[-1]))
-    by_core[..., POSITION_ERROR] = (rho / distance)[..., None, :]
+    by_core[..., SHIFT] = (rho / distance)[..., None, :]
     if known.range_model == "bias":
-        by_core[..., CORE_ERRORS] = -1.0
+        by_core[..., 6] = -1.0
         distance = distance - cores[..., CORE : CORE + 1]
     return found._replace(common=distance, common_by_core=by_core)
 
@@ -136,8 +141,8 @@ def _with_ranges(found: Rows, cores: Array, points: Array) -> Rows:
     along = away / distance
     by_point = along @ turn
     by_core = np.zeros((*by_point.shape[:-1], found.by_core.shape[-1]))
-    by_core[..., ATTITUDE_ERROR] = cross(points, by_point)
-    by_core[..., POSITION_ERROR] = -along
+    by_core[..., TURN] = cross(points, by_point)
+    by_core[..., SHIFT] = -along
     shared = np.concatenate([found.shared, np.zeros_like(found.shared[..., :1, :])], axis=-2)
     return found._replace(
         shown=np.concatenate([found.shown, distance], axis=-1),
