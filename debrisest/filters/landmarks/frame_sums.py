@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray
 from debrisest.filters.landmark_model import LandmarkModel, Observations, Rows
 from debrisest.filters.weights import CAUCHY_SCALE, cauchy_loss, cauchy_weight
@@ -41,6 +42,8 @@ def sums(
 
     ``by_start (run, frame, s, n_x)`` is the derivative of the errors that rows depend on.
     """
+    if compiled.available():
+        return _compiled(model, rows, seen, placed, by_start, robust)
     used = seen.seen & placed[:, None, :, None]
     residual = np.where(used, (seen.shown - rows.shown) / model.sigma, 0.0)
     squares = (residual**2).sum(-1)
@@ -63,6 +66,33 @@ def sums(
         + (squares_of_common * near_common).sum((-2, -1))
         + explained,
         (used & near[..., None]).sum((-3, -2, -1)) + near_common.sum((-2, -1)),
+    )
+
+
+def _compiled(
+    model: LandmarkModel,
+    rows: Rows,
+    seen: Observations,
+    placed: BoolArray,
+    by_start: Array,
+    robust: bool,
+) -> Sums:
+    """The same by compiled loops."""
+    from debrisest.filters.landmarks.frame_sums_loops import sums
+
+    row_parts: Any = tuple(np.ascontiguousarray(part) for part in rows)
+    seen_parts: Any = tuple(np.ascontiguousarray(part) for part in seen)
+    costs, information, gradient, counts, landmarks = sums(
+        row_parts,
+        seen_parts,
+        placed,
+        (model.sigma, model.common_sigma),
+        np.ascontiguousarray(by_start),
+        (CAUCHY_SCALE * robust, FAR),
+    )
+    return Sums(
+        *(costs[:, 0], information, gradient, landmarks[:, 0], landmarks[:, 1]),
+        *(counts[:, 0], costs[:, 1], counts[:, 1]),
     )
 
 

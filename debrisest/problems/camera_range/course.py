@@ -32,6 +32,8 @@ _TURNING = np.r_[0 : RATE_ERROR.stop, LOG_INERTIA_ERROR]
 _TURNED = RATE.stop
 _MOVING = slice(POSITION.start, VELOCITY.stop)
 _MOVING_ERROR = slice(POSITION_ERROR.start, VELOCITY_ERROR.stop)
+_RATES, _CENTRES, _RATIOS = slice(0, 3), slice(3, 9), slice(9, 14)
+"""Their places among the parameters of a start."""
 _LARGEST_TURN = 0.125
 """Angle, rad, up to which one Runge-Kutta step of order 4 is far below what pixels show."""
 _MOST_SUBSTEPS = 64.0
@@ -60,14 +62,13 @@ def over(
     """Course over some epochs of what `moved` gives, from errors (run, n_c, n_x) of the start."""
     runs, n_x = len(cores), by_parameters.shape[-1]
     by_start = np.zeros((runs, len(frames), 6 + known.extras, n_x))
-    turned = turning[:, frames, :3].reshape(runs, -1, 11) @ by_parameters[:, _TURNING]
-    by_start[..., :3, :] = turned.reshape(runs, -1, 3, n_x)
-    centre = clohessy_wiltshire.transition(
-        known.mean_motion, known.step * frames.astype(np.float64)
-    )
-    shifted = centre[:, :3].reshape(-1, 6) @ by_parameters[:, _MOVING_ERROR]
-    by_start[..., 3:6, :] = shifted.reshape(runs, -1, 3, n_x)
-    by_start[..., 6:, :] = by_parameters[:, None, CORE_ERRORS:]
+    turned = turning[:, frames, :3]
+    by_start[..., :3, _RATES], by_start[..., :3, _RATIOS] = turned[..., 3:6], turned[..., 6:]
+    if known.attitude == "implied":
+        by_start[..., :3, :] += turned[..., :3] @ by_parameters[:, None, :3]
+    centre = clohessy_wiltshire.transition(known.mean_motion, known.step * frames.astype(float))
+    by_start[..., 3:6, _CENTRES] = centre[:, :3]
+    by_start[..., 6:, 14:] = np.eye(known.extras)
     last = _transitions(known, turning[:, -1], centre[-1]) @ by_parameters
     return Course(cores[:, frames], by_start, last)
 
