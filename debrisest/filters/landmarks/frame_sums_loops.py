@@ -12,6 +12,8 @@ Rows = tuple[Array, Array, Array, Array, Array, Array]
 """As in `debrisest.filters.landmark_model.Rows`, of runs and frames, or of one frame."""
 Seen = tuple[Array, BoolArray, Array, BoolArray]
 """As in `debrisest.filters.landmark_model.Observations`."""
+Used = tuple[IntArray, IntArray, Array, Array]
+"""Rows of a frame in use: landmark and component, weight over noise, weighted residual."""
 Figures = tuple[Array, IntArray, IntArray]
 """Of a run: cost and squares (2), components and those near (2), landmarks seen and near (2, N)."""
 
@@ -38,20 +40,23 @@ def sums(
     own, crossed = np.empty((s, s + 1)), np.empty((s, 3 * points))
     half, across, row = np.empty((s, n_x)), np.empty((n_x, 3 * points)), np.empty(n)
     shared = np.empty((causes, causes)), np.empty((causes, s + 3 * points + 1))
-    lines, owners = np.empty((points * each, s + 4 + causes)), np.empty(points * each, np.int64)
+    most = points * each
+    used = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most), np.empty(most)
     for run in range(runs):
         figures = (costs[run], counts[run], landmarks[run])
         across[:] = 0.0
         for k in range(frames):
-            of = (rows[0][run, k], rows[1][run, k], rows[2][run, k], rows[5][run, k])
-            shown = (seen[0][run, k], seen[1][run, k])
-            count = _lines(of, shown, placed[run], noise[0], limits, lines, owners, figures)
+            measured, shown = seen[0][run, k], rows[0][run, k]
+            by_core, by_point = rows[1][run, k], rows[2][run, k]
+            count = _sightings(
+                shown, measured, seen[1][run, k], placed[run], noise[0], limits, used, figures
+            )
             own[:], crossed[:] = 0.0, 0.0
-            _products(lines, owners, count, own, crossed, information[run], gradient[run])
+            _products(by_core, by_point, used, count, own, crossed, information[run], gradient[run])
             common = (rows[3][run, k], rows[4][run, k], seen[2][run, k])
             _common(common, seen[3][run, k], noise[1], limits, own, figures)
             if causes:
-                _shared(lines, owners, count, shared)
+                _shared(by_core, by_point, rows[5][run, k], used, count, shared)
                 _without_shared(
                     shared, by_start[run, k], row, information[run], gradient[run], costs[run]
                 )
@@ -62,88 +67,84 @@ def sums(
 
 
 @compiled
-def _lines(
-    rows: tuple[Array, Array, Array, Array],
-    seen: tuple[Array, BoolArray],
+def _sightings(
+    shown: Array,
+    measured: Array,
+    seen: BoolArray,
     placed: BoolArray,
     sigma: Array,
     limits: tuple[float, float],
-    lines: Array,
-    owners: IntArray,
+    used: Used,
     figures: Figures,
 ) -> int:
-    """Write normalised, weighted rows of what a frame has seen, and their landmarks; their number.
-
-    Each is its derivative by s errors, the residual, the derivative by the point, its shared noise.
-    """
-    shown, by_core, by_point, noise = rows
-    (points, each, s), count = by_core.shape, 0
+    """Write what is used of a frame; its number of rows."""
+    owners, components, scales, residuals = used
+    costs, counts, landmarks = figures
+    (points, each), count = shown.shape, 0
     for p in range(points):
-        square, used = 0.0, 0
+        square, first = 0.0, count
         for i in range(each):
-            if placed[p] and seen[1][p, i]:
-                square += ((seen[0][p, i] - shown[p, i]) / sigma[i]) ** 2
-                used += 1
-        if used == 0:
+            if placed[p] and seen[p, i]:
+                scales[count] = 1.0 / sigma[i]
+                residuals[count] = (measured[p, i] - shown[p, i]) / sigma[i]
+                square += residuals[count] ** 2
+                owners[count], components[count] = p, i
+                count += 1
+        if count == first:
             continue
-        weight = _counted(square, used, limits, figures[0], figures[1])
-        figures[2][0, p] += 1
-        figures[2][1, p] += square < limits[1]
-        for i in range(each):
-            if not seen[1][p, i]:
-                continue
-            scale = weight / sigma[i]
-            for a in range(s):
-                lines[count, a] = by_core[p, i, a] * scale
-            lines[count, s] = (seen[0][p, i] - shown[p, i]) * scale
-            for a in range(3):
-                lines[count, s + 1 + a] = by_point[p, i, a] * scale
-            for a in range(noise.shape[2]):
-                lines[count, s + 4 + a] = noise[p, i, a] * scale
-            owners[count] = p
-            count += 1
+        loss, weight = _loss(square, limits[0])
+        near = square < limits[1]
+        costs[0] += loss
+        costs[1] += square if near else 0.0
+        counts[0] += count - first
+        counts[1] += (count - first) * near
+        landmarks[0, p] += 1
+        landmarks[1, p] += near
+        for q in range(first, count):
+            scales[q] *= weight
+            residuals[q] *= weight
     return count
 
 
 @compiled
-def _counted(
-    square: float, used: int, limits: tuple[float, float], costs: Array, counts: IntArray
-) -> float:
-    """Count components that are judged by their square together, and return their weight."""
-    scale = limits[0] ** 2
-    costs[0] += scale * np.log1p(square / scale) if limits[0] else square
-    counts[0] += used
-    if square < limits[1]:
-        costs[1] += square
-        counts[1] += used
-    return float((1.0 + square / scale) ** -0.5 if limits[0] else 1.0)
+def _loss(square: float, scale: float) -> tuple[float, float]:
+    """Return what a square costs, and the weight of its residuals; with a scale by Cauchy."""
+    if scale == 0.0:
+        return square, 1.0
+    ratio = square / scale**2
+    return scale**2 * np.log1p(ratio), 1.0 / np.sqrt(1.0 + ratio)
 
 
 @compiled
 def _products(
-    lines: Array,
-    owners: IntArray,
+    by_core: Array,
+    by_point: Array,
+    used: Used,
     count: int,
     own: Array,
     crossed: Array,
     information: Array,
     gradient: Array,
 ) -> None:
-    """Add the squares of lines: by the core (s, s + 1), with the points (s, 3 N), of the points."""
+    """Add the squares of rows: by the core (s, s + 1), with the points (s, 3 N), of the points."""
+    owners, components, scales, residuals = used
     s, first = len(own), len(gradient) - crossed.shape[1]
     for q in range(count):
-        at, residual = 3 * owners[q], lines[q, s]
-        x, y, z = lines[q, s + 1], lines[q, s + 2], lines[q, s + 3]
+        p, i, scale = owners[q], components[q], scales[q]
+        x, y, z = scale * by_point[p, i, 0], scale * by_point[p, i, 1], scale * by_point[p, i, 2]
+        at, residual = 3 * p, residuals[q]
         for a in range(s):
-            row = lines[q, a]
-            for b in range(a, s + 1):
-                own[a, b] += row * lines[q, b]
+            row = scale * by_core[p, i, a]
             crossed[a, at] += row * x
             crossed[a, at + 1] += row * y
             crossed[a, at + 2] += row * z
+            own[a, s] += row * residual
+            row *= scale
+            for b in range(a, s):
+                own[a, b] += row * by_core[p, i, b]
         at += first
         for a in range(3):
-            row = lines[q, s + 1 + a]
+            row = scale * by_point[p, i, a]
             gradient[at + a] += row * residual
             information[at + a, at] += row * x
             information[at + a, at + 1] += row * y
@@ -161,12 +162,18 @@ def _common(
 ) -> None:
     """Add the common rows of a frame."""
     predicted, by_core, measured = common
+    costs, counts, _ = figures
     s = by_core.shape[1]
     for i in range(len(sigma)):
         if not seen[i]:
             continue
         residual = (measured[i] - predicted[i]) / sigma[i]
-        weight = _counted(residual**2, 1, limits, figures[0], figures[1])
+        loss, weight = _loss(residual**2, limits[0])
+        costs[0] += loss
+        counts[0] += 1
+        if residual**2 < limits[1]:
+            costs[1] += residual**2
+            counts[1] += 1
         scale, residual = weight / sigma[i], weight * residual
         for a in range(s):
             row = by_core[i, a] * scale
@@ -206,22 +213,28 @@ def _by_start(
 
 
 @compiled
-def _shared(lines: Array, owners: IntArray, count: int, shared: tuple[Array, Array]) -> None:
-    """Write the squares (c, c) of the noise that lines share, and its products with them."""
+def _shared(
+    by_core: Array,
+    by_point: Array,
+    noise: Array,
+    used: Used,
+    count: int,
+    shared: tuple[Array, Array],
+) -> None:
+    """Write the squares (c, c) of the noise that rows share, and its products with them."""
     total, right = shared
-    causes = len(total)
-    s, total[:], right[:] = lines.shape[1] - 4 - causes, 0.0, 0.0
+    total[:], right[:], s = 0.0, 0.0, by_core.shape[2]
     for q in range(count):
-        at = s + 3 * owners[q]
-        for c in range(causes):
-            cause = lines[q, s + 4 + c]
-            for d in range(causes):
-                total[c, d] += cause * lines[q, s + 4 + d]
+        p, i, scale = used[0][q], used[1][q], used[2][q]
+        for c in range(len(total)):
+            cause = scale * scale * noise[p, i, c]
+            for d in range(len(total)):
+                total[c, d] += cause * noise[p, i, d]
             for a in range(s):
-                right[c, a] += cause * lines[q, a]
+                right[c, a] += cause * by_core[p, i, a]
             for a in range(3):
-                right[c, at + a] += cause * lines[q, s + 1 + a]
-            right[c, -1] += cause * lines[q, s]
+                right[c, s + 3 * p + a] += cause * by_point[p, i, a]
+            right[c, -1] += scale * noise[p, i, c] * used[3][q]
 
 
 @compiled

@@ -5,6 +5,7 @@ linear, and its derivative the same for all runs; the rotation is integrated.
 """
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import numpy as np
 
@@ -82,9 +83,20 @@ def trajectory(known: CameraRangeGeometry, core: Array, last: int) -> tuple[Arra
 
 def process(known: CameraRangeGeometry, core: Array) -> tuple[Array, Array]:
     """Core ``(run, n)`` one step later, and the derivative ``(run, n_c, n_c)`` of its errors."""
-    cores, turning = moved(known, core, 1)
-    centre = clohessy_wiltshire.transition(known.mean_motion, known.step)
-    return cores[:, 1], _transitions(known, turning[:, 1], centre)
+    after = core.copy()
+    turning = np.empty((len(core), tumbling_in_orbit.TURNING, 11))
+    for count, runs in _by_substeps(known, core):
+        turned, by_start = rotation(known, core[runs], 1, count)
+        after[runs, :_TURNED], turning[runs] = turned[:, 1], by_start[:, 1]
+    centre = _one_step(known.mean_motion, known.step)
+    after[..., _MOVING] = core[..., _MOVING] @ centre.T
+    return after, _transitions(known, turning, centre)
+
+
+@lru_cache
+def _one_step(mean_motion: float, step: float) -> Array:
+    """Transition (6, 6) of the centre over one epoch."""
+    return clohessy_wiltshire.transition(mean_motion, step)
 
 
 def moved(
@@ -108,9 +120,9 @@ def moved(
 
 def _by_substeps(known: CameraRangeGeometry, core: Array) -> Iterator[tuple[int, IntArray]]:
     """Numbers of Runge-Kutta steps in one epoch, powers of two, and the runs that need them."""
-    turn = np.linalg.norm(core[..., RATE], axis=-1) * known.step / _LARGEST_TURN
-    halvings = np.ceil(np.log2(np.clip(np.nan_to_num(turn, nan=1.0), 1.0, _MOST_SUBSTEPS)))
-    for halving in np.unique(halvings):
+    turn = np.sqrt((core[..., RATE] ** 2).sum(-1)) * known.step / _LARGEST_TURN
+    halvings = np.ceil(np.log2(np.fmin(np.fmax(turn, 1.0), _MOST_SUBSTEPS)))
+    for halving in sorted(set(halvings.tolist())):
         yield int(2**halving), np.flatnonzero(halvings == halving)
 
 
@@ -118,13 +130,15 @@ def rotation(
     known: CameraRangeGeometry, core: Array, last: int, count: int, sensitive: bool = True
 ) -> tuple[Array, Array]:
     """Attitude and rate (run, last + 1, 7), and their errors by those of epoch 0."""
-    shape = tumbling_in_orbit.body(core[..., LOG_INERTIA])
     if compiled.available():
+        from debrisest.dynamics.log_inertia_loops import with_derivative
         from debrisest.dynamics.tumbling_in_orbit_loops import rotation
 
         pace = known.mean_motion, 3.0 * known.mean_motion**2 * known.gravity_gradient
         start = np.ascontiguousarray(core[..., :_TURNED])
-        return rotation(start, *shape, pace, known.step / count, last, count, sensitive)
+        body = with_derivative(np.ascontiguousarray(core[..., LOG_INERTIA]))
+        return rotation(start, *body, pace, known.step / count, last, count, sensitive)
+    shape = tumbling_in_orbit.body(core[..., LOG_INERTIA])
     products = tumbling_in_orbit.torque_products(shape)
     q, w, n, duration = core[..., Q], core[..., RATE], known.mean_motion, known.step / count
     turned = np.empty((len(core), last + 1, _TURNED))

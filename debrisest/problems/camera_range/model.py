@@ -17,6 +17,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.dynamics.pointing import camera_axes, camera_rate
@@ -125,6 +126,10 @@ _CROSS_TERMS = [LOG_INERTIA.start - 4 + 3, LOG_INERTIA.start - 4 + 4]
 
 def retract(core: Array, error: Array) -> Array:
     """Core ``(..., n)`` moved by an error ``(..., n_c)``."""
+    if compiled.available() and core.ndim == 2:
+        from debrisest.problems.camera_range.core_loops import retracted
+
+        return retracted(core, np.ascontiguousarray(error))
     moved = np.concatenate([core[..., :4], core[..., 4:] + error[..., 3:]], axis=-1)
     moved[..., Q] = quaternion.multiply(core[..., Q], quaternion.exp(error[..., ATTITUDE_ERROR]))
     return moved

@@ -89,7 +89,7 @@ def _pixels(
         from debrisest.problems.camera_range.projection_loops import pixels
 
         implied = known.attitude == "implied"
-        by_position = turn_by_position(cores[..., POSITION]) if implied else -to_camera
+        by_position = turn_by_position(cores[..., POSITION]) if implied else to_camera
         return pixels(
             np.ascontiguousarray(cores),
             np.ascontiguousarray(points[:, 0]),
@@ -144,7 +144,7 @@ def _by_position(known: CameraRangeGeometry, cores: Array, to_camera: Array, arm
 def _with_range(known: CameraRangeGeometry, found: Rows, cores: Array) -> Rows:
     """Add the range to the centre of mass, or to a surface that is nearer by a constant."""
     rho = cores[..., POSITION]
-    distance = np.linalg.norm(rho, axis=-1, keepdims=True)
+    distance = np.sqrt((rho * rho).sum(-1, keepdims=True))
     by_core = np.zeros((*distance.shape, found.by_core.shape[-1]))
     by_core[..., SHIFT] = (rho / distance)[..., None, :]
     if known.range_model == "bias":

@@ -22,12 +22,11 @@ def pixels(
 ) -> tuple[Array, Array, Array, Array]:
     """Return pixels (run, epoch, N, 2), and their derivatives by errors, by points and by a bias.
 
-    Of cores ``(run, epoch, n)``, points ``(run, N, 3)`` and ``R_ch (run, epoch, 3, 3)``. The
-    position moves points by ``by_position (run, epoch, 3, 3)``, or, if the camera's attitude is
-    ``implied`` by it, turns them so about the centre and moves that away. ``optics`` are the focal
-    length, px, and the least depth. With a camera that is ``biased`` the last three errors are its
-    bias. How ``wide`` the derivatives by errors and by the bias are: the latter are 3, or not
-    wanted.
+    Of cores ``(run, epoch, n)``, points ``(run, N, 3)`` and ``R_ch (run, epoch, 3, 3)``. A camera
+    whose attitude is ``implied`` turns by the position as ``by_position (run, epoch, 3, 3)`` has
+    it. ``optics`` are the focal length, px, and the least depth. With a camera that is ``biased``
+    the last three errors are its bias. How ``wide`` the derivatives by errors and by the bias are:
+    the latter are 3, or not wanted.
     """
     runs, epochs, count = *cores.shape[:2], points.shape[1]
     shown, by_point = np.empty((runs, epochs, count, 2)), np.empty((runs, epochs, count, 2, 3))
@@ -74,7 +73,8 @@ def _frame(
     core, away, by_position = frame
     by_core, by_point, by_bias = slopes
     u, v, w = core[7], core[8], core[9]
-    shift[:] = by_position
+    if not implied:
+        shift[:] = -away
     for n in range(len(points)):
         a, b, c = points[n, 0], points[n, 1], points[n, 2]
         x = turn[0, 0] * a + turn[0, 1] * b + turn[0, 2] * c
