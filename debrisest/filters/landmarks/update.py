@@ -52,12 +52,13 @@ class _Linear(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """``P H^T``, S, the gain, and the correction of the prior's state."""
+    """``P H^T``, S, the gain, the correction of the prior's state, and ``S^-1 nu``."""
 
     cross: Array
     total: Array
     gain: Array
     correction: Array
+    weighed: Array
 
 
 def update(
@@ -84,7 +85,7 @@ def update(
     rejected = observed.seen.sum((-2, -1)) + observed.common_seen.sum(-1) - used.sum(-1)
     step = _gauss_newton(prior, linear, used)
     innovation = np.where(used, linear.innovation, 0.0)
-    nis = (innovation * solve(step.total, innovation[..., None])[..., 0]).sum(-1)
+    nis = (innovation * step.weighed).sum(-1)
     count = _iterate(model, prior, observed, k, settings, inflation, used, step)
     core, points = moved_by(model, prior, step.correction)
     change = step.gain @ np.swapaxes(step.cross - 0.5 * step.gain @ step.total, -1, -2)
@@ -215,8 +216,11 @@ def _gauss_newton(prior: Belief, linear: _Linear, used: BoolArray) -> _Step:
         innovation, response, noise = drop_missing(used, innovation, response, noise)
     cross = prior.covariance @ response
     total = np.swapaxes(response, -1, -2) @ cross + noise
-    gain = np.swapaxes(solve(total, np.swapaxes(cross, -1, -2)), -1, -2)
-    return _Step(cross, total, gain, (gain @ innovation[..., None])[..., 0])
+    right = np.concatenate([np.swapaxes(cross, -1, -2), innovation[..., None]], axis=-1)
+    solved = solve(total, right)
+    gain = np.swapaxes(solved[..., :-1], -1, -2)
+    correction = (gain @ innovation[..., None])[..., 0]
+    return _Step(cross, total, gain, correction, solved[..., -1])
 
 
 def moved_by(model: LandmarkModel, prior: Belief, correction: Array) -> tuple[Array, Array]:
