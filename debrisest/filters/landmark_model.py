@@ -36,8 +36,8 @@ class Course(NamedTuple):
 
     cores: Array
     """(run, epoch, n)."""
-    by_start: Array
-    """(run, epoch, s, n_x), of the errors that rows depend on."""
+    by_start: Callable[[slice], Array]
+    """Some of the epochs -> (run, epoch, s, n_x), of the errors that rows depend on."""
     last: Array
     """(run, n_c, n_x), of all errors of the last epoch."""
 

@@ -101,6 +101,6 @@ def cost(
         part = slice(first, first + _BLOCK)
         rows = model.rows(course.cores[:, part], at.points[:, None], frames[part])
         seen = observed.at(slice(None), frames[part])
-        found = sums(model, rows, seen, at.placed, course.by_start[:, part], robust)
+        found = sums(model, rows, seen, at.placed, course.by_start(part), robust)
         total = Sums(*(old + new for old, new in zip(total, found)))
     return Cost(*total, course.cores[:, -1], course.last)

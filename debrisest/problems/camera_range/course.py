@@ -61,16 +61,20 @@ def over(
     frames: IntArray,
 ) -> Course:
     """Course over some epochs of what `moved` gives, from errors (run, n_c, n_x) of the start."""
-    runs, n_x = len(cores), by_parameters.shape[-1]
-    by_start = np.zeros((runs, len(frames), 6 + known.extras, n_x))
-    turned = turning[:, frames, :3]
-    by_start[..., :3, _RATES], by_start[..., :3, _RATIOS] = turned[..., 3:6], turned[..., 6:]
-    if known.attitude == "implied":
-        by_start[..., :3, :] += turned[..., :3] @ by_parameters[:, None, :3]
     centre = clohessy_wiltshire.transition(known.mean_motion, known.step * frames.astype(float))
-    by_start[..., 3:6, _CENTRES] = centre[:, :3]
-    by_start[..., 6:, 14:] = np.eye(known.extras)
     last = _transitions(known, turning[:, -1], centre[-1]) @ by_parameters
+
+    def by_start(part: slice) -> Array:
+        turned = turning[:, frames[part], :3]
+        shape = (*turned.shape[:2], 6 + known.extras, by_parameters.shape[-1])
+        result = np.zeros(shape)
+        result[..., :3, _RATES], result[..., :3, _RATIOS] = turned[..., 3:6], turned[..., 6:]
+        if known.attitude == "implied":
+            result[..., :3, :] += turned[..., :3] @ by_parameters[:, None, :3]
+        result[..., 3:6, _CENTRES] = centre[part, :3]
+        result[..., 6:, 14:] = np.eye(known.extras)
+        return result
+
     return Course(cores[:, frames], by_start, last)
 
 

@@ -54,11 +54,14 @@ def doubted(known: CameraRangeGeometry, model: LandmarkModel) -> LandmarkModel:
         core, by_parameters = model.start(parameters[..., :-count])
         cores, turning = course.moved(known, core, last := int(frames[-1]))
         found = course.over(known, by_parameters, cores, turning, frames)
-        by_start = _widened(found.by_start)
-        by_start[..., SHIFT, -count:][..., PULL] = _pulled(known, last)[frames, :3]
-        by_start[..., TURN, -count:][..., TORQUE] = _turned(turning[..., :6], known.step)[
-            :, frames, :3
-        ]
+        pulled, turned = _pulled(known, last), _turned(turning[..., :6], known.step)
+
+        def by_start(part: slice) -> Array:
+            wide = _widened(found.by_start(part))
+            wide[..., SHIFT, -count:][..., PULL] = pulled[frames[part], :3]
+            wide[..., TURN, -count:][..., TORQUE] = turned[:, frames[part], :3]
+            return wide
+
         return Course(found.cores, by_start, found.last)
 
     def rows(cores: Array, points: Array, epochs: IntArray) -> Rows:

@@ -132,7 +132,7 @@ def test_doubts_are_the_slopes_of_what_is_shown(experiment) -> None:
     epoch = np.array([40])
     cores, by_start, _ = wide.course(parameters, epoch)
     rows = wide.rows(cores, case.points[:, None], epoch)
-    by_end = by_start[:, 0, :, 14:]
+    by_end = by_start(slice(1))[:, 0, :, 14:]
     pixels = (rows.by_core[0, 0] @ by_end[0])[..., :2, :]
 
     def shown(model, core=None):
