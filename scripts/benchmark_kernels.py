@@ -43,6 +43,7 @@ from debrisest.filters.model import Model
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
+from debrisest.problems.camera_range import course as in_orbit
 from debrisest.problems.camera_range import model as camera_range
 from debrisest.problems.camera_range import redundant_model
 from debrisest.problems.orbit_from_pixels.model import ObserverGeometry, scan_model
@@ -71,10 +72,10 @@ def kernels() -> dict[str, Kernel]:
             f"motion and derivatives of an arc, {count} epochs": lambda t=t: course(arc, t)
             for count, t in times.items()
         },
-        "rotation in orbit and derivatives, 20 runs of 1165 epochs": lambda: camera_range._rotation(
+        "rotation in orbit and derivatives, 20 runs of 1165 epochs": lambda: in_orbit.rotation(
             orbit, core, 1165, 1
         ),
-        "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
+        "the same, one run": lambda: in_orbit.rotation(orbit, core[:1], 1165, 1),
         "descents on known points, 4 arcs of 150 epochs": descents(),
         "unscented filter, 91 states, 20 runs of two epochs": sigma_points(),
         "unscented filter, 14 states, 100 runs of ten epochs": tumbling(),

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.attitude.vectors import cross, matrix_of_cross
+from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import log_inertia
 
 TURNING = 6
@@ -97,12 +97,13 @@ def sensitivity(
     by_motion, by_ratios = _variation(stages, shape, 3.0 * mean_motion**2 * gravity)
     start = np.zeros((*by_motion.shape[:-3], TURNING, 11))
     start[...] = np.eye(TURNING, 11)
-    total, slope, at = start.copy(), start, start
-    for i, (part, weight) in enumerate(((0.5, 1.0), (0.5, 2.0), (1.0, 2.0), (0.0, 1.0))):
-        slope = by_motion[..., i, :, :] @ at
+    slope = np.zeros_like(start)
+    slope[..., :6], slope[..., 3:, 6:] = by_motion[..., 0, :, :], by_ratios[..., 0, :, :]
+    total = start + (duration / 6.0) * slope
+    for i, (part, weight) in enumerate(((0.5, 2.0), (0.5, 2.0), (1.0, 1.0)), start=1):
+        slope = by_motion[..., i, :, :] @ (start + (part * duration) * slope)
         slope[..., 3:, 6:] += by_ratios[..., i, :, :]
         total += (weight * duration / 6.0) * slope
-        at = start + (part * duration) * slope
     return np.asarray(total)
 
 
@@ -125,19 +126,36 @@ def _slopes(
 def _variation(stages: Stages, shape: Body, gravity: float) -> tuple[Array, Array]:
     """Derivatives of the slopes of errors, by errors ``(..., 4, 6, 6)`` and by log-ratios."""
     w, o = stages.rate, stages.radial
-    inertia, inverse = shape.inertia[..., None, :, :], shape.inverse[..., None, :, :]
-    iw, io = w @ shape.inertia, o @ shape.inertia
-    spin, skew_o = matrix_of_cross(w), matrix_of_cross(o)
+    by_products, by_vector, by_ratios = _forms(shape)
+    products = w[..., :, None] * w[..., None, :] - gravity * o[..., :, None] * o[..., None, :]
+    products = products.reshape(*w.shape[:-1], 9)
+    spin = products @ np.swapaxes(by_products, -1, -2)
     by_motion = np.zeros((*w.shape[:-1], 6, 6))
-    by_motion[..., :3, :3] = -spin
+    by_motion[..., :3, :3] = -matrix_of_cross(w)
     by_motion[..., :3, 3:] = np.eye(3)
-    by_motion[..., 3:, :3] = inverse @ ((skew_o @ inertia - matrix_of_cross(io)) @ skew_o * gravity)
-    by_motion[..., 3:, 3:] = inverse @ (matrix_of_cross(iw) - spin @ inertia)
-    slope = ((gravity * cross(o, io) - cross(w, iw))[..., None, :] @ inverse)[..., 0, :]
-    vectors = np.stack([w, o, slope], axis=-2)[..., None, :, :]
-    dw, do, ds = np.moveaxis(vectors @ shape.derivative[..., None, :, :, :], -2, 0)
-    torques = gravity * cross(o[..., None, :], do) - cross(w[..., None, :], dw) - ds
-    return by_motion, inverse @ np.swapaxes(torques, -1, -2)
+    by_radial = (-gravity * o @ by_vector).reshape(*w.shape, 3)
+    by_motion[..., 3:, :3] = by_radial @ matrix_of_cross(o)
+    by_motion[..., 3:, 3:] = (w @ by_vector).reshape(*w.shape, 3)
+    torques = np.concatenate([products, spin], axis=-1) @ by_ratios
+    return by_motion, torques.reshape(*w.shape, 5)
+
+
+def _forms(shape: Body) -> tuple[Array, Array, Array]:
+    """What angular accelerations are by products p of rates and directions, and by log-ratios.
+
+    ``-I^-1 (w x I w - 3 n^2 o x I o)`` is a matrix (..., 3, 9) times ``w_j w_k - 3 n^2 o_j o_k``;
+    its derivative by a vector is this vector times one (..., 3, 9), by the log-ratios p and the
+    acceleration times one (..., 12, 15).
+    """
+    lead = shape.inertia.shape[:-2]
+    by_products = torque_products(shape)
+    pairs = by_products.reshape(*lead, 3, 3, 3)
+    by_vector = np.moveaxis(pairs + np.swapaxes(pairs, -1, -2), -1, -3).reshape(*lead, 3, 9)
+    inverse = shape.inverse[..., None, :, :]
+    of_ratios = torque_products(Body(shape.derivative, inverse, shape.derivative))
+    both = np.concatenate([of_ratios, -inverse @ shape.derivative], axis=-1)
+    by_ratios = np.moveaxis(both, -1, -3)
+    return by_products, by_vector, np.swapaxes(by_ratios, -1, -2).reshape(*lead, 12, 15)
 
 
 def _direction_products() -> Array:

@@ -10,6 +10,8 @@ from debrisest.compiled import compiled
 
 Vectors = tuple[Array, Array, Array]
 """Room for three vectors (3)."""
+_WIDE = 16
+"""Room for eleven errors that a compiler makes whole vectors of."""
 _PARTS, _WEIGHTS = (0.5, 0.5, 1.0, 0.0), (1.0, 2.0, 2.0, 1.0)
 
 
@@ -23,40 +25,46 @@ def rotation(
     duration: float,
     last: int,
     count: int,
+    sensitive: bool,
 ) -> tuple[Array, Array]:
     """Return attitude and rate (run, last + 1, 7), and their errors by those of epoch 0.
 
-    The latter are (run, last + 1, 6, 11). ``start (run, 7)``, and a body for each run; ``pace``
-    is the mean motion and three times its square, zero without gravity; an epoch has ``count``
-    steps of the duration, s.
+    The latter are (run, last + 1, 6, 11), of no epoch if not wanted. ``start (run, 7)``, and a body
+    for each run; ``pace`` is the mean motion and three times its square, zero without gravity; an
+    epoch has ``count`` steps of the duration, s.
     """
-    moved, errors = np.empty((len(start), last + 1, 7)), np.empty((len(start), last + 1, 6, 11))
-    slope, radial = np.empty(7), np.empty(3)
+    moved = np.empty((len(start), last + 1, 7))
+    errors = np.empty((len(start), (last + 1) * sensitive, 6, 11))
+    slope, radial, vectors = np.empty(7), np.empty(3), (np.empty(3), np.empty(3), np.empty(3))
     turn, spin = slope[:4], slope[4:]
-    by, at, total = np.empty((6, 11)), np.empty((6, 11)), np.empty((6, 11))
-    vectors = np.empty(3), np.empty(3), np.empty(3)
-    room = (np.empty((3, 11)), np.empty((3, 11)), np.empty((3, 3)))
+    x, new, tried = np.empty(7), np.empty(7), np.empty(7)
+    by_vector, by_ratios, by_motion = np.empty((3, 9)), np.empty((12, _WIDE)), np.empty((3, 6))
+    ratios, beside = np.empty(_WIDE), np.zeros((3, _WIDE))
+    now, at, ahead, total = np.empty((4, 6, _WIDE))
     for run in range(len(start)):
         body = (inertia[run], inverse[run], derivative[run])
-        x, new, tried, now = start[run].copy(), np.empty(7), np.empty(7), np.eye(6, 11)
+        x[:], now[:] = start[run], np.eye(6, _WIDE)
+        _forms(body, by_vector, by_ratios)
         for k in range(last * count + 1):
             if k % count == 0:
-                moved[run, k // count], errors[run, k // count] = x, now
+                moved[run, k // count] = x
+                if sensitive:
+                    errors[run, k // count] = now[:, :11]
             if k == last * count:
                 break
             new[:], tried[:] = x, x
             total[:], at[:] = now, now
             for i in range(4):
                 slopes(tried, body, pace, turn, spin, radial, vectors)
-                _variation(tried[4:], radial, spin, body, pace[1], at, by, vectors, room)
                 part, weight = _PARTS[i] * duration, _WEIGHTS[i] * duration / 6.0
+                if sensitive:
+                    _by_motion(by_vector, tried, radial, pace[1], by_motion)
+                    _by_ratios(by_ratios, tried, radial, spin, pace[1], ratios, beside)
+                    _varied(by_motion, beside, tried, at, now, part, ahead, weight, total)
+                    at, ahead = ahead, at
                 for a in range(7):
                     tried[a] = x[a] + part * slope[a]
                     new[a] += weight * slope[a]
-                for a in range(6):
-                    for b in range(11):
-                        total[a, b] += weight * by[a, b]
-                        at[a, b] = now[a, b] + part * by[a, b]
             new[:4] /= np.sqrt(np.sum(new[:4] ** 2))
             x[:], now[:] = new, total
     return moved, errors
@@ -96,71 +104,98 @@ def slopes(
 
 
 @compiled
-def _variation(
-    w: Array,
-    o: Array,
-    spin: Array,
-    body: tuple[Array, Array, Array],
-    gravity: float,
-    at: Array,
-    by: Array,
-    vectors: Vectors,
-    room: tuple[Array, Array, Array],
-) -> None:
-    """Write the derivative (6, 11) of errors ``at (6, 11)``."""
-    torque, slope, by_radial = room
-    _torques(w, o, spin, body, gravity, torque, by_radial, vectors)
-    inverse = body[1]
+def _forms(body: tuple[Array, Array, Array], by_vector: Array, by_ratios: Array) -> None:
+    """Write what angular accelerations are by rates and log-ratios.
+
+    With ``p_jk = w_j w_k - 3 n^2 o_j o_k`` that is ``-I^-1 (w x I w - 3 n^2 o x I o)``, a matrix
+    (3, 9) times p: its derivative by a vector is one (3, 9) of ``(j, 3 i + k)`` times this vector.
+    By the log-ratios it is (12, 15) times p and the acceleration itself, of ``5 i + b``.
+    """
+    inertia, inverse, derivative = body
+    by_vector[:], by_ratios[:] = 0.0, 0.0
     for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        for b in range(11):
-            slope[i, b] = inverse[i, 0] * torque[0, b] + inverse[i, 1] * torque[1, b]
-            slope[i, b] += inverse[i, 2] * torque[2, b]
-        for b in range(11):
-            by[i, b] = at[3 + i, b] - w[j] * at[k, b] + w[k] * at[j, b]
-            by[3 + i, b] = slope[i, b] if b >= 6 else 0.0
-        for c in range(6):
-            for b in range(11):
-                by[3 + i, b] += slope[i, c] * at[c, b]
+        for m in range(3):
+            j, n = (m + 1) % 3, (m + 2) % 3
+            for k in range(3):
+                for first, second, sign in ((j, n, -1.0), (n, j, 1.0)):
+                    held = sign * inverse[i, m]
+                    by_vector[k, 3 * i + first] += held * inertia[second, k]
+                    by_vector[first, 3 * i + k] += held * inertia[second, k]
+                    for b in range(5):
+                        row = 3 * first + k
+                        by_ratios[row, 5 * i + b] += held * derivative[b, second, k]
+                for b in range(5):
+                    by_ratios[9 + k, 5 * i + b] -= inverse[i, m] * derivative[b, m, k]
 
 
 @compiled
-def _torques(
-    w: Array,
+def _by_motion(by_vector: Array, x: Array, o: Array, gravity: float, by_motion: Array) -> None:
+    """Write an angular acceleration's derivative (3, 6) by attitude and rate."""
+    for i in range(3):
+        a = b = c = 0.0
+        for k in range(3):
+            by_motion[i, 3 + k] = 0.0
+            for j in range(3):
+                by_motion[i, 3 + k] += by_vector[j, 3 * i + k] * x[4 + j]
+        for j in range(3):
+            a -= gravity * by_vector[j, 3 * i] * o[j]
+            b -= gravity * by_vector[j, 3 * i + 1] * o[j]
+            c -= gravity * by_vector[j, 3 * i + 2] * o[j]
+        by_motion[i, 0], by_motion[i, 1] = b * o[2] - c * o[1], c * o[0] - a * o[2]
+        by_motion[i, 2] = a * o[1] - b * o[0]
+
+
+@compiled
+def _by_ratios(
+    by_ratios: Array,
+    x: Array,
     o: Array,
     spin: Array,
-    body: tuple[Array, Array, Array],
     gravity: float,
-    torque: Array,
-    by_radial: Array,
-    vectors: Vectors,
+    ratios: Array,
+    beside: Array,
 ) -> None:
-    """Write the derivative (3, 11) of the torque, with the inertial one, by errors."""
-    inertia, _, derivative = body
-    moment, pull, held = vectors
-    _applied(inertia, w, moment)
-    _applied(inertia, o, pull)
+    """Write its derivative (3, 5) by log-ratios, behind six zeros."""
+    ratios[:] = 0.0
+    for j in range(3):
+        r, s = x[4 + j], gravity * o[j]
+        a, b, c = r * x[4] - s * o[0], r * x[5] - s * o[1], r * x[6] - s * o[2]
+        for e in range(ratios.shape[0]):
+            ratios[e] += a * by_ratios[3 * j, e] + b * by_ratios[3 * j + 1, e]
+        for e in range(ratios.shape[0]):
+            ratios[e] += c * by_ratios[3 * j + 2, e] + spin[j] * by_ratios[9 + j, e]
+    for i in range(3):
+        for e in range(5):
+            beside[i, 6 + e] = ratios[5 * i + e]
+
+
+@compiled
+def _varied(
+    by_motion: Array,
+    beside: Array,
+    x: Array,
+    at: Array,
+    now: Array,
+    part: float,
+    ahead: Array,
+    weight: float,
+    total: Array,
+) -> None:
+    """Add the slope of errors ``at (6, .)`` to their sum, and write those of the next stage."""
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        for c in range(3):
-            by_radial[i, c] = gravity * (o[j] * inertia[k, c] - o[k] * inertia[j, c])
-            torque[i, 3 + c] = w[k] * inertia[j, c] - w[j] * inertia[k, c]
-        by_radial[i, j] += gravity * pull[k]
-        by_radial[i, k] -= gravity * pull[j]
-        torque[i, 3 + j] -= moment[k]
-        torque[i, 3 + k] += moment[j]
-    for c in range(3):
-        d, e = (c + 1) % 3, (c + 2) % 3
-        for i in range(3):
-            torque[i, c] = by_radial[i, d] * o[e] - by_radial[i, e] * o[d]
-    for b in range(5):
-        _applied(derivative[b], w, moment)
-        _applied(derivative[b], o, pull)
-        _applied(derivative[b], spin, held)
-        for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
-            pulled = gravity * (o[j] * pull[k] - o[k] * pull[j])
-            torque[i, 6 + b] = pulled - (w[j] * moment[k] - w[k] * moment[j]) - held[i]
+        u, v = x[4 + j], x[4 + k]
+        for b in range(at.shape[1]):
+            by = at[3 + i, b] - u * at[k, b] + v * at[j, b]
+            total[i, b] += weight * by
+            ahead[i, b] = now[i, b] + part * by
+        c, d, e = by_motion[i, 0], by_motion[i, 1], by_motion[i, 2]
+        f, g, h = by_motion[i, 3], by_motion[i, 4], by_motion[i, 5]
+        for b in range(at.shape[1]):
+            by = beside[i, b] + c * at[0, b] + d * at[1, b] + e * at[2, b]
+            by += f * at[3, b] + g * at[4, b] + h * at[5, b]
+            total[3 + i, b] += weight * by
+            ahead[3 + i, b] = now[3 + i, b] + part * by
 
 
 @compiled

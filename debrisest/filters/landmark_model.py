@@ -19,16 +19,27 @@ class Rows(NamedTuple):
     shown: Array
     """(..., N, r)."""
     by_core: Array
-    """(..., N, r, n_c)."""
+    """(..., N, r, s), by the s errors of the core that rows depend on."""
     by_point: Array
     """(..., N, r, 3)."""
     common: Array
     """(..., m)."""
     common_by_core: Array
-    """(..., m, n_c)."""
+    """(..., m, s)."""
     shared: Array
     """Noise that all landmarks of an epoch share, per unit of each of its c causes,
     (..., N, r, c); c may be zero."""
+
+
+class Course(NamedTuple):
+    """Cores of some epochs, and what their errors are by the parameters of the start."""
+
+    cores: Array
+    """(run, epoch, n)."""
+    by_start: Callable[[slice], Array]
+    """Some of the epochs -> (run, epoch, s, n_x), of the errors that rows depend on."""
+    last: Array
+    """(run, n_c, n_x), of all errors of the last epoch."""
 
 
 class Observations(NamedTuple):
@@ -68,6 +79,8 @@ class LandmarkModel(NamedTuple):
     """(m,)."""
     error_names: tuple[str, ...]
     """Of the core and of the points, n_c + 3 N."""
+    shown_by: IntArray
+    """Errors of the core (s,), of their own epoch, that rows depend on."""
     start: Callable[[Array], tuple[Array, Array]]
     """parameters (run, n_c - held) -> core (run, n) at epoch 0, and the derivative
     (run, n_c, n_c - held) of its errors."""
@@ -75,6 +88,10 @@ class LandmarkModel(NamedTuple):
     """Inverse of `start`."""
     mirror: Callable[[Array, Array], tuple[Array, Array]]
     """(parameters, points (run, N, 3)) -> those of the other motion that looks nearly the same."""
+    path: Callable[[Array, int], Array]
+    """(core at epoch 0, last) -> cores (run, last + 1, n)."""
+    course: Callable[[Array, IntArray], Course]
+    """(parameters, ascending epochs) -> the course of that start over them."""
     trajectory: Callable[[Array, int], tuple[Array, Array]]
     """(core at epoch 0, last) -> cores (run, last + 1, n), errors of each epoch by those of epoch 0
     (run, last + 1, n_c, n_c)."""
@@ -99,8 +116,6 @@ class LandmarkModel(NamedTuple):
     gauge: Callable[[Array, Array], Array] | None = None
     """(core, points (run, N, 3)) -> errors (run, n_c + 3 N, g) in g directions that no measurement
     tells; none where the start is one of the model's own, which holds them."""
-    shown_by: IntArray | slice = slice(None)
-    """Errors of the core, of their own epoch, that rows depend on."""
     directions: int = 2
     """Leading components of a landmark, its pixels, without which `place` puts it nowhere."""
 

@@ -7,10 +7,36 @@ import pytest
 
 from debrisest import compiled
 from debrisest.arrays import Array
+from debrisest.dynamics import log_inertia
 from debrisest.filters.kalman.unscented import UnscentedParameters, unscented
-from debrisest.problems.camera_range import model, redundant_model
+from debrisest.problems.camera_range import course, model, redundant_model
 
 pytest.importorskip("numba")
+log_inertia_loops = pytest.importorskip("debrisest.dynamics.log_inertia_loops")
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-6, 0.3, 3.0])
+def test_inertia_and_its_derivative_are_the_same(size: float) -> None:
+    """Also of a sphere, and of bodies with two equal moments."""
+    ratios = size * np.random.default_rng(1).normal(size=(5, 5))
+    ratios[3:, 2:] = 0.0
+    ratios[4, 0] = 0.0
+    for fast, slow in zip(
+        log_inertia_loops.with_derivative(ratios), log_inertia.with_derivative(ratios)
+    ):
+        np.testing.assert_allclose(fast, slow, rtol=0, atol=1e-12 * np.abs(slow).max())
+
+
+def test_cores_are_moved_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    draws = np.random.default_rng(2)
+    core, error = draws.normal(size=(4, 19)), draws.normal(size=(4, 18))
+    core[:, model.Q] /= np.linalg.norm(core[:, model.Q], axis=-1, keepdims=True)
+    error[1:3, :3] *= [[0.0], [1e-9]]
+    found = []
+    for fast in (True, False):
+        monkeypatch.setattr(compiled, "available", lambda fast=fast: fast)
+        found.append(model.retract(core, error))
+    np.testing.assert_allclose(*found, rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize("gravity", [True, False])
@@ -26,7 +52,7 @@ def test_rotation_is_the_same(monkeypatch: pytest.MonkeyPatch, gravity: bool, co
     found = []
     for fast in (True, False):
         monkeypatch.setattr(compiled, "available", lambda fast=fast: fast)
-        found.append(model._rotation(known, core, 200, count))
+        found.append(course.rotation(known, core, 200, count))
     for fast, slow in zip(*found):
         np.testing.assert_allclose(fast, slow, atol=1e-12 * np.abs(slow).max())
 

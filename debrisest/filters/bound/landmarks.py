@@ -85,12 +85,13 @@ def _whitened(model: LandmarkModel, rows: Rows, observed: Observations) -> tuple
     count, n_c = landmarks * each, model.errors
     scale = (used / model.sigma)[..., None]
     flat = np.zeros((runs, epochs, count + model.common, n_c + 3 * landmarks))
-    flat[:, :, :count, :n_c] = (rows.by_core * scale).reshape(runs, epochs, count, n_c)
+    by_core = (rows.by_core * scale).reshape(runs, epochs, count, -1)
+    flat[:, :, :count, model.shown_by] = by_core
     row = np.arange(count).reshape(landmarks, each, 1)
     column = n_c + np.arange(3 * landmarks).reshape(landmarks, 1, 3)
     flat[:, :, row, column] = rows.by_point * scale
     weight = observed.common_seen / model.common_sigma
-    flat[:, :, count:, :n_c] = rows.common_by_core * weight[..., None]
+    flat[:, :, count:, model.shown_by] = rows.common_by_core * weight[..., None]
     result = np.concatenate(
         [
             np.where(used, residual, 0.0).reshape(runs, epochs, count),

@@ -4,7 +4,8 @@ import numpy as np
 
 from debrisest.arrays import Array, IntArray
 from debrisest.filters.landmarks.batch_start import Problem
-from debrisest.filters.landmarks.cost import Unknowns, cost
+from debrisest.filters.landmarks.cost import Unknowns
+from debrisest.filters.landmarks.residuals import value
 from debrisest.filters.landmarks.whole_arc import Arc
 
 
@@ -18,8 +19,7 @@ def costs(task: Problem, arc: Arc, core: Array, points: Array) -> tuple[Array, A
     best = arc.found.best
     told = best.at.placed & arc.anchors[-1].present
     true = Unknowns(task.model.parameters(core), np.where(told[..., None], points, 0.0), told)
-    frames = np.arange(arc.anchors[-1].epoch + 1)
-    known = task.model, arc.observed, best.prior
+    known, last = (task.model, arc.observed, best.prior), arc.anchors[-1].epoch
     found = best.at._replace(placed=told)
-    own, other = (cost(*known, at, frames, False).value for at in (found, true))
+    own, other = (value(*known, at, last) for at in (found, true))
     return own, other, task.parameters.shape[-1] + 3 * told.sum(-1)

@@ -10,7 +10,7 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray
 from debrisest.filters.landmark_model import LandmarkModel
 from debrisest.filters.landmarks.update import Belief
-from debrisest.filters.linear_algebra import scaled_inverse
+from debrisest.filters.linear_algebra import scaled_inverse, solve
 
 
 def information(model: LandmarkModel, belief: Belief) -> Array | None:
@@ -34,16 +34,17 @@ def honest(
     assert model.gauge is not None
     gauge = model.gauge(belief.core, belief.points)
     claimed = _along(gauge, belief, present)
-    missing = scaled_inverse(known) - scaled_inverse(claimed)
+    free = scaled_inverse(known)
+    missing = free - scaled_inverse(claimed)
     values, vectors = np.linalg.eigh(np.nan_to_num(missing))
     wide = gauge @ (vectors * np.sqrt(np.maximum(values, 0.0))[:, None])
     wide[:, model.errors :] *= np.repeat(present, 3, axis=-1)[..., None]
     mended = np.asarray(belief.covariance + wide @ np.swapaxes(wide, -1, -2))
-    return mended, _largest_ratio(claimed, known)
+    return mended, _largest_ratio(claimed, free)
 
 
-def _largest_ratio(claimed: Array, known: Array) -> Array:
-    root = np.linalg.cholesky(scaled_inverse(known))
+def _largest_ratio(claimed: Array, free: Array) -> Array:
+    root = np.linalg.cholesky(free)
     whitened = np.swapaxes(root, -1, -2) @ np.nan_to_num(claimed) @ root
     return np.asarray(np.linalg.eigvalsh(whitened)[:, -1])
 
@@ -54,10 +55,14 @@ def _along(gauge: Array, belief: Belief, present: BoolArray) -> Array:
     there = np.concatenate(
         [np.ones((len(gauge), core), dtype=np.bool_), np.repeat(present, 3, axis=-1)], axis=-1
     )
+    variance = np.diagonal(belief.covariance, 0, -2, -1)
+    scale = np.where(there, variance, 1.0) ** -0.5
     both = there[:, :, None] & there[:, None, :]
-    covariance = np.where(both, belief.covariance, np.eye(there.shape[-1]))
-    along = np.where(there[..., None], gauge, 0.0)
-    return np.asarray(np.swapaxes(along, -1, -2) @ scaled_inverse(covariance) @ along)
+    scaled = scale[:, :, None] * belief.covariance * scale[:, None]
+    along = np.where(there, scale, 0.0)[..., None] * gauge
+    told = np.where(both, scaled, np.eye(there.shape[-1]))
+    found = np.swapaxes(along, -1, -2) @ solve(told, along)
+    return np.asarray(0.5 * (found + np.swapaxes(found, -1, -2)))
 
 
 def _no_landmark(model: LandmarkModel, belief: Belief) -> BoolArray:

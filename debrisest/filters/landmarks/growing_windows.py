@@ -83,7 +83,7 @@ def place(
     if not new.any():
         return at, prior
     first = _typical_sighting(observed.shown[..., : model.directions], seen)
-    cores, _ = model.trajectory(model.start(at.parameters)[0], last)
+    cores = model.path(model.start(at.parameters)[0], last)
     runs, landmarks = np.arange(len(first))[:, None], np.arange(first.shape[1])
     points, _, _ = model.place(cores[runs, first], observed.shown[runs, first, landmarks], first)
     found = Unknowns(at.parameters, np.where(new[..., None], points, at.points), at.placed | new)

@@ -7,8 +7,9 @@ import numpy as np
 from debrisest.arrays import Array, BoolArray
 from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.landmarks.batch_start import Problem, confirmed
-from debrisest.filters.landmarks.cost import Prior, Unknowns, cost, residuals
+from debrisest.filters.landmarks.cost import Prior, Unknowns, cost
 from debrisest.filters.landmarks.growing_windows import Fit
+from debrisest.filters.landmarks.residuals import residuals, value
 from debrisest.filters.landmarks.whole_arc import Arc
 from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.runs import take
@@ -148,10 +149,10 @@ def _bend(task: Problem, arc: Arc) -> SelfTest:
         return bend_test(rise)
     along = vectors[wide, :, -1] / sigma[wide]
     step = (spread[wide, :, :n_x] @ along[..., None])[..., 0] / np.sqrt(values[wide, -1:])
-    part, frames = task.of(wide), np.arange(arc.anchors[-1].epoch + 1)
+    part, last = task.of(wide), arc.anchors[-1].epoch
     at, prior = take(best.at, wide), take(best.prior, wide)
     costs = [
-        cost(part.model, arc.observed.at(wide), prior, at.moved(x * step), frames, False).value
+        value(part.model, arc.observed.at(wide), prior, at.moved(x * step), last)
         for x in (0.0, -1.0, 1.0)
     ]
     rise[wide] = np.maximum(*costs[1:]) - costs[0]

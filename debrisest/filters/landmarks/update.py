@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.filters.gate import chi_square_limits, group_squares
 from debrisest.filters.iterated import iterate
-from debrisest.filters.landmark_model import LandmarkModel, Observations, in_line
+from debrisest.filters.landmark_model import LandmarkModel, Observations
 from debrisest.filters.linear_algebra import solve
 from debrisest.filters.missing import drop_missing
 from debrisest.filters.runs import put, take
@@ -51,12 +52,13 @@ class _Linear(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """``P H^T``, S, the gain, and the correction of the prior's state."""
+    """``P H^T``, S, the gain, the correction of the prior's state, and ``S^-1 nu``."""
 
     cross: Array
     total: Array
     gain: Array
     correction: Array
+    weighed: Array
 
 
 def update(
@@ -74,14 +76,18 @@ def update(
     Joseph's, multiplied out: ``P - K W^T - W K^T`` with ``W = P H^T - K S / 2`` costs a quarter and
     depends on errors of the gain in second order only, too.
     """
+    if compiled.available():
+        from debrisest.filters.landmarks.compiled_update import compiled_update
+
+        return compiled_update(model, prior, observed, k, settings, inflation)
     linear = _linearise(model, prior.core, prior.points, observed, k, inflation)
     used, accepted = _gated(model, prior, observed, linear, settings)
     rejected = observed.seen.sum((-2, -1)) + observed.common_seen.sum(-1) - used.sum(-1)
     step = _gauss_newton(prior, linear, used)
     innovation = np.where(used, linear.innovation, 0.0)
-    nis = (innovation * solve(step.total, innovation[..., None])[..., 0]).sum(-1)
+    nis = (innovation * step.weighed).sum(-1)
     count = _iterate(model, prior, observed, k, settings, inflation, used, step)
-    core, points = _moved(model, prior, step.correction)
+    core, points = moved_by(model, prior, step.correction)
     change = step.gain @ np.swapaxes(step.cross - 0.5 * step.gain @ step.total, -1, -2)
     covariance = prior.covariance - change - np.swapaxes(change, -1, -2)
     return Belief(core, points, covariance), Frame(nis, used.sum(-1), rejected, accepted, count)
@@ -102,11 +108,10 @@ def _iterate(
     anything = used.any(-1, keepdims=True)
 
     def again(runs: IntArray) -> None:
-        core, points = _moved(model, prior, step.correction)
+        core, points = moved_by(model, prior, step.correction)
         linear = _linearise(model, core, points, observed, k, inflation)
-        shift = in_line(prior.points - points)
-        lag = np.concatenate([model.difference(prior.core, core), shift], axis=-1)
-        residual = linear.innovation - (linear.response @ lag[..., None])[..., 0]
+        back = (linear.response @ step.correction[..., None])[..., 0]
+        residual = linear.innovation + back
         new = _gauss_newton(prior, linear._replace(innovation=residual), used)
         put(step, runs, take(new, runs))
 
@@ -132,11 +137,11 @@ def _linearise(
     count = landmarks * each
     m = count + model.common
     response = np.zeros((runs, m, n_c + 3 * landmarks))
-    response[:, :count, :n_c] = rows.by_core.reshape(runs, count, n_c)
+    response[:, :count, model.shown_by] = rows.by_core.reshape(runs, count, -1)
     row = np.arange(count).reshape(landmarks, each, 1)
     column = n_c + np.arange(3 * landmarks).reshape(landmarks, 1, 3)
     response[:, row, column] = rows.by_point[:, 0]
-    response[:, count:, :n_c] = rows.common_by_core[:, 0]
+    response[:, count:, model.shown_by] = rows.common_by_core[:, 0]
     innovation = np.concatenate(
         [
             (observed.shown - rows.shown[:, 0]).reshape(runs, count),
@@ -211,11 +216,15 @@ def _gauss_newton(prior: Belief, linear: _Linear, used: BoolArray) -> _Step:
         innovation, response, noise = drop_missing(used, innovation, response, noise)
     cross = prior.covariance @ response
     total = np.swapaxes(response, -1, -2) @ cross + noise
-    gain = np.swapaxes(solve(total, np.swapaxes(cross, -1, -2)), -1, -2)
-    return _Step(cross, total, gain, (gain @ innovation[..., None])[..., 0])
+    right = np.concatenate([np.swapaxes(cross, -1, -2), innovation[..., None]], axis=-1)
+    solved = solve(total, right)
+    gain = np.swapaxes(solved[..., :-1], -1, -2)
+    correction = (gain @ innovation[..., None])[..., 0]
+    return _Step(cross, total, gain, correction, solved[..., -1])
 
 
-def _moved(model: LandmarkModel, prior: Belief, correction: Array) -> tuple[Array, Array]:
+def moved_by(model: LandmarkModel, prior: Belief, correction: Array) -> tuple[Array, Array]:
+    """Core (run, n) and points (run, N, 3) after a correction (run, n_e)."""
     n_c = model.errors
     shift = correction[:, n_c:].reshape(prior.points.shape)
     return model.retract(prior.core, correction[:, :n_c]), prior.points + shift

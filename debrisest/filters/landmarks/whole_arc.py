@@ -22,7 +22,8 @@ from debrisest.filters.landmarks.batch_start import (
     ordered,
     redrawn,
 )
-from debrisest.filters.landmarks.cost import FAR, Unknowns, without_far
+from debrisest.filters.landmarks.cost import Unknowns
+from debrisest.filters.landmarks.frame_sums import FAR
 from debrisest.filters.landmarks.growing_windows import (
     FROM_NEAR,
     PATIENCE,
@@ -32,6 +33,7 @@ from debrisest.filters.landmarks.growing_windows import (
     fit,
     place,
 )
+from debrisest.filters.landmarks.residuals import without_far
 from debrisest.filters.landmarks.update import Belief
 from debrisest.filters.linear_algebra import scaled_inverse
 from debrisest.filters.rivals import GIVEN_UP

@@ -130,7 +130,7 @@ def _kept(times: list[float], given: Given) -> list[int]:
 def _off(model: LandmarkModel, core: Array, sigma: Array) -> Array:
     """How far (run,) the model's motion leaves the true cores (run, time, n), in sigma."""
     start, _ = model.start(model.parameters(core[:, 0]))
-    cores, _ = model.trajectory(start, core.shape[1] - 1)
+    cores = model.path(start, core.shape[1] - 1)
     apart = np.abs(model.difference(core, cores))
     known = sigma > 0.0
     off = np.where(known, apart / np.where(known, sigma, 1.0), 0.0)

@@ -11,10 +11,10 @@ from debrisest.arrays import Array, IntArray
 from debrisest.attitude.vectors import matrix_of_cross
 from debrisest.dynamics import clohessy_wiltshire
 from debrisest.filters.doubt import Doubt
-from debrisest.filters.landmark_model import LandmarkModel, Rows
-from debrisest.problems.camera_range import model as motion
+from debrisest.filters.landmark_model import Course, LandmarkModel, Rows
+from debrisest.problems.camera_range import course
 from debrisest.problems.camera_range.model import CameraRangeGeometry
-from debrisest.problems.camera_range.projection import landmark_model
+from debrisest.problems.camera_range.projection import SHIFT, TURN, landmark_model
 from debrisest.sensors import pinhole
 
 _DEGREES = 180.0 / np.pi
@@ -44,25 +44,25 @@ def doubtful_model(known: CameraRangeGeometry) -> LandmarkModel:
 
 
 def doubted(known: CameraRangeGeometry, model: LandmarkModel) -> LandmarkModel:
-    """Return the model with errors of the `DOUBTS` behind those of its core, all of value zero."""
+    """Return the model with errors of the `DOUBTS` behind those of its core, all of value zero.
+
+    What it has of them are the slopes of the cost; it tells of no core where they would be.
+    """
     count = len(DOUBTS)
 
-    def start(parameters: Array) -> tuple[Array, Array]:
-        core, by = model.start(parameters[..., :-count])
-        wide = np.zeros((*by.shape[:-2], by.shape[-2] + count, by.shape[-1] + count))
-        wide[..., :-count, :-count], wide[..., -count:, -count:] = by, np.eye(count)
-        return core, wide
+    def with_doubts(parameters: Array, frames: IntArray) -> Course:
+        core, by_parameters = model.start(parameters[..., :-count])
+        cores, turning = course.moved(known, core, last := int(frames[-1]))
+        found = course.over(known, by_parameters, cores, turning, frames)
+        pulled, turned = _pulled(known, last), _turned(turning[..., :6], known.step)
 
-    def trajectory(core: Array, last: int) -> tuple[Array, Array]:
-        cores, transitions = model.trajectory(core, last)
-        n_c = transitions.shape[-1]
-        wide = np.zeros((*transitions.shape[:-2], n_c + count, n_c + count))
-        wide[..., :n_c, :n_c], wide[..., n_c:, n_c:] = transitions, np.eye(count)
-        wide[..., motion.POSITION_ERROR.start : motion.VELOCITY_ERROR.stop, n_c:][..., PULL] = (
-            _pulled(known, last)
-        )
-        wide[..., :6, n_c:][..., TORQUE] = _turned(transitions[..., :6, :6], known.step)
-        return cores, wide
+        def by_start(part: slice) -> Array:
+            wide = _widened(found.by_start(part))
+            wide[..., SHIFT, -count:][..., PULL] = pulled[frames[part], :3]
+            wide[..., TURN, -count:][..., TORQUE] = turned[:, frames[part], :3]
+            return wide
+
+        return Course(found.cores, by_start, found.last)
 
     def rows(cores: Array, points: Array, epochs: IntArray) -> Rows:
         return _doubted_rows(known, model.rows(cores, points, epochs))
@@ -71,12 +71,19 @@ def doubted(known: CameraRangeGeometry, model: LandmarkModel) -> LandmarkModel:
     names = tuple(f"doubt_{i + 1}" for i in range(count))
     return model._replace(
         error_names=(*model.error_names[:n_c], *names, *model.error_names[n_c:]),
-        start=start,
-        trajectory=trajectory,
+        course=with_doubts,
         rows=rows,
         shown_by=np.append(np.arange(n_c)[model.shown_by], n_c + np.arange(count)),
         doubted=None,
     )
+
+
+def _widened(by_start: Array) -> Array:
+    """The same (..., s, n_x) with the doubts behind its errors and its parameters."""
+    s, n_x = by_start.shape[-2:]
+    wide = np.zeros((*by_start.shape[:-2], s + len(DOUBTS), n_x + len(DOUBTS)))
+    wide[..., :s, :n_x], wide[..., s:, n_x:] = by_start, np.eye(len(DOUBTS))
+    return wide
 
 
 def _doubted_rows(known: CameraRangeGeometry, found: Rows) -> Rows:

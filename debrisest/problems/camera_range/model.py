@@ -13,7 +13,6 @@ is either known or, as in the paper, implied by rho: it then looks at the centre
 so that with an implied one it is tied to rho, by the derivative G of the camera's rotation.
 """
 
-from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -21,7 +20,6 @@ import numpy as np
 from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
-from debrisest.dynamics import clohessy_wiltshire, tumbling_in_orbit
 from debrisest.dynamics.pointing import camera_axes, camera_rate
 
 CameraAttitude = Literal["known", "implied"]
@@ -38,12 +36,6 @@ RATE_ERROR, POSITION_ERROR, VELOCITY_ERROR, LOG_INERTIA_ERROR = (
     slice(12, 17),
 )
 CORE_ERRORS = 17
-_TURNING = np.r_[0:6, 12:17]
-"""Errors that the rotation depends on."""
-_TURNED = RATE.stop
-_LARGEST_TURN = 0.125
-"""Angle, rad, up to which one Runge-Kutta step of order 4 is far below what pixels show."""
-_MOST_SUBSTEPS = 64.0
 
 
 class CameraRangeGeometry(NamedTuple):
@@ -132,95 +124,12 @@ _CROSS_TERMS = [LOG_INERTIA.start - 4 + 3, LOG_INERTIA.start - 4 + 4]
 """Inertia's xz and yz among the parameters."""
 
 
-def trajectory(known: CameraRangeGeometry, core: Array, last: int) -> tuple[Array, Array]:
-    """Cores ``(run, last + 1, n)`` from that of epoch 0, and errors by those of epoch 0."""
-    cores = np.empty((len(core), last + 1, core.shape[-1]))
-    cores[:] = core[:, None]
-    turning = np.empty((len(core), last + 1, tumbling_in_orbit.TURNING, 11))
-    for count, runs in _by_substeps(known, core):
-        cores[runs, :, :_TURNED], turning[runs] = _rotation(known, core[runs], last, count)
-    centre = clohessy_wiltshire.transition(known.mean_motion, known.step * np.arange(last + 1.0))
-    moving = slice(POSITION.start, VELOCITY.stop)
-    cores[..., moving] = (centre @ core[:, None, moving, None])[..., 0]
-    return cores, _transitions(known, turning, centre)
-
-
-def process(known: CameraRangeGeometry, core: Array) -> tuple[Array, Array]:
-    """Core ``(run, n)`` one step later, and the derivative ``(run, n_c, n_c)`` of its errors."""
-    moved = core.copy()
-    turning = np.empty((len(core), tumbling_in_orbit.TURNING, 11))
-    for count, runs in _by_substeps(known, core):
-        turned, by_start = _rotation(known, core[runs], 1, count)
-        moved[runs, :_TURNED], turning[runs] = turned[:, 1], by_start[:, 1]
-    centre = clohessy_wiltshire.transition(known.mean_motion, known.step)
-    moving = slice(POSITION.start, VELOCITY.stop)
-    moved[..., moving] = (centre @ core[..., moving, None])[..., 0]
-    return moved, _transitions(known, turning, centre)
-
-
-def _by_substeps(known: CameraRangeGeometry, core: Array) -> Iterator[tuple[int, IntArray]]:
-    """Numbers of Runge-Kutta steps in one epoch, powers of two, and the runs that need them."""
-    turn = np.linalg.norm(core[..., RATE], axis=-1) * known.step / _LARGEST_TURN
-    halvings = np.ceil(np.log2(np.clip(np.nan_to_num(turn, nan=1.0), 1.0, _MOST_SUBSTEPS)))
-    for halving in np.unique(halvings):
-        yield int(2**halving), np.flatnonzero(halvings == halving)
-
-
-def _rotation(
-    known: CameraRangeGeometry, core: Array, last: int, count: int
-) -> tuple[Array, Array]:
-    """Attitude and rate (run, last + 1, 7), and their errors by those of epoch 0."""
-    shape = tumbling_in_orbit.body(core[..., LOG_INERTIA])
-    if compiled.available():
-        from debrisest.dynamics.tumbling_in_orbit_loops import rotation
-
-        pace = known.mean_motion, 3.0 * known.mean_motion**2 * known.gravity_gradient
-        start = np.ascontiguousarray(core[..., :_TURNED])
-        return rotation(start, *shape, pace, known.step / count, last, count)
-    products = tumbling_in_orbit.torque_products(shape)
-    q, w, n, duration = core[..., Q], core[..., RATE], known.mean_motion, known.step / count
-    turned = np.empty((len(core), last + 1, _TURNED))
-    rates, radials = (np.empty((len(core), last * count, 4, 3)) for _ in range(2))
-    for k in range(last * count):
-        if k % count == 0:
-            turned[:, k // count, Q], turned[:, k // count, RATE] = q, w
-        q, w, stages = tumbling_in_orbit.step(
-            q, w, shape, n, duration, products, known.gravity_gradient
-        )
-        rates[:, k], radials[:, k] = stages
-    turned[:, last, Q], turned[:, last, RATE] = q, w
-    steps = tumbling_in_orbit.sensitivity(
-        tumbling_in_orbit.Stages(rates, radials),
-        tumbling_in_orbit.Body(*(part[:, None] for part in shape)),
-        n,
-        duration,
-        known.gravity_gradient,
-    )
-    return turned, _composed(steps)[:, ::count]
-
-
-def _composed(steps: Array) -> Array:
-    """Products ``(run, epoch + 1, 6, 11)`` of the steps ``(run, epoch, 6, 11)`` so far."""
-    result = np.empty((len(steps), steps.shape[1] + 1, 6, 11))
-    result[:, 0] = np.eye(6, 11)
-    for k in range(steps.shape[1]):
-        result[:, k + 1] = steps[:, k, :, :6] @ result[:, k]
-        result[:, k + 1, :, 6:] += steps[:, k, :, 6:]
-    return result
-
-
-def _transitions(known: CameraRangeGeometry, turning: Array, centre: Array) -> Array:
-    """Derivative ``(..., n_c, n_c)`` of rotation ``(..., 6, 11)`` and centre ``(..., 6, 6)``."""
-    n_c = CORE_ERRORS + known.extras
-    result = np.zeros((*turning.shape[:-2], n_c, n_c))
-    result[...] = np.eye(n_c)
-    result[..., :6, _TURNING] = turning
-    result[..., 6:12, 6:12] = centre
-    return result
-
-
 def retract(core: Array, error: Array) -> Array:
     """Core ``(..., n)`` moved by an error ``(..., n_c)``."""
+    if compiled.available() and core.ndim == 2:
+        from debrisest.problems.camera_range.core_loops import retracted
+
+        return retracted(core, np.ascontiguousarray(error))
     moved = np.concatenate([core[..., :4], core[..., 4:] + error[..., 3:]], axis=-1)
     moved[..., Q] = quaternion.multiply(core[..., Q], quaternion.exp(error[..., ATTITUDE_ERROR]))
     return moved

@@ -5,11 +5,13 @@ Symbols as in `debrisest.problems.camera_range.model`; A takes body axes to the 
 
 import numpy as np
 
+from debrisest import compiled
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude import quaternion
 from debrisest.attitude.vectors import cross, matrix_of_cross
 from debrisest.dynamics.pointing import camera_axes
 from debrisest.filters.landmark_model import LandmarkModel, Rows
+from debrisest.problems.camera_range import course
 from debrisest.problems.camera_range import model as motion
 from debrisest.problems.camera_range.gauge import turn_of_axes
 from debrisest.problems.camera_range.model import (
@@ -27,6 +29,8 @@ from debrisest.sensors import pinhole
 
 _NEAREST = 0.5
 """Depth, m, in place of a smaller or negative one, which no camera shows."""
+TURN, SHIFT = slice(0, 3), slice(3, 6)
+"""Attitude and position among the errors that rows depend on; constants of sensors follow."""
 
 
 def landmark_model(known: CameraRangeGeometry) -> LandmarkModel:
@@ -41,43 +45,33 @@ def landmark_model(known: CameraRangeGeometry) -> LandmarkModel:
         sigma=np.append(pixel, known.range_sigma) if ranged else pixel,
         common_sigma=np.full(int(not ranged), known.range_sigma),
         error_names=error_names(known),
+        shown_by=np.r_[ATTITUDE_ERROR, POSITION_ERROR, CORE_ERRORS : CORE_ERRORS + known.extras],
         start=lambda parameters: motion.start(known, parameters),
         parameters=lambda core: core[..., 4:].copy(),
         mirror=motion.mirror,
-        trajectory=lambda core, last: motion.trajectory(known, core, last),
-        process=lambda core: motion.process(known, core),
+        path=lambda core, last: course.path(known, core, last),
+        course=lambda parameters, frames: course.course(known, parameters, frames),
+        trajectory=lambda core, last: course.trajectory(known, core, last),
+        process=lambda core: course.process(known, core),
         rows=lambda cores, points, epochs: rows(known, cores, points, epochs),
         place=lambda cores, shown, epochs: place(known, cores, shown, epochs),
         retract=motion.retract,
         difference=motion.difference,
         of=lambda runs: landmark_model(known.of(runs)),
         gauge=turn_of_axes,
-        shown_by=np.r_[ATTITUDE_ERROR, POSITION_ERROR, CORE_ERRORS : CORE_ERRORS + known.extras],
     )
 
 
 def rows(known: CameraRangeGeometry, cores: Array, points: Array, epochs: IntArray) -> Rows:
-    """Pixels and ranges of cores ``(run, epoch, n)`` and points ``(run, 1 or epoch, N, 3)``."""
-    to_camera, turn, seen_from, arm = _geometry(known, cores, points, epochs)
-    point = seen_from.copy()
-    point[..., 2] = np.maximum(point[..., 2], _NEAREST)
-    by_point = pinhole.derivative_through(point, known.focal, turn[..., None, :, :])
-    by_position = _by_position(known, cores, to_camera, arm)
-    n_c = CORE_ERRORS + known.extras
-    by_core = np.zeros((*by_point.shape[:-1], n_c))
-    by_core[..., ATTITUDE_ERROR] = cross(points[..., None, :], by_point)
-    by_core[..., POSITION_ERROR] = pinhole.derivative_through(point, known.focal, by_position)
-    noisy, by_bias = known.attitude_sigma > 0.0, by_point[..., :0]
-    if noisy or known.camera_bias:
-        by_bias = pinhole.derivative_through(point, known.focal, matrix_of_cross(point))
-    if known.camera_bias:
-        by_core[..., -3:] = by_bias
+    """Pixels and ranges of cores ``(run, epoch, n)`` and points ``(run, 1, N, 3)``."""
+    shown, by_core, by_point, by_bias = _pixels(known, cores, points, epochs)
+    noisy, none = known.attitude_sigma > 0.0, np.zeros((*cores.shape[:-1], 0))
     found = Rows(
-        shown=pinhole.project(point, known.focal),
+        shown=shown,
         by_core=by_core,
         by_point=by_point,
-        common=np.zeros((*cores.shape[:-1], 0)),
-        common_by_core=np.zeros((*cores.shape[:-1], 0, n_c)),
+        common=none,
+        common_by_core=np.zeros((*none.shape, by_core.shape[-1])),
         shared=known.attitude_sigma * by_bias if noisy else by_bias[..., :0],
     )
     if known.range_model == "landmark":
@@ -85,21 +79,52 @@ def rows(known: CameraRangeGeometry, cores: Array, points: Array, epochs: IntArr
     return _with_range(known, found, cores)
 
 
-def _geometry(
+def _pixels(
     known: CameraRangeGeometry, cores: Array, points: Array, epochs: IntArray
 ) -> tuple[Array, Array, Array, Array]:
-    """``R_ch`` and A ``(..., 3, 3)``, points from the camera and from the centre in its axes."""
-    rho = cores[..., POSITION]
-    if known.attitude == "implied":
-        to_camera = np.swapaxes(camera_axes(rho), -1, -2)
-    else:
-        to_camera = np.swapaxes(known.camera[:, epochs], -1, -2)
-        if known.camera_bias:
-            turn_back = quaternion.to_matrix(quaternion.exp(-cores[..., -3:]))
-            to_camera = turn_back @ to_camera
+    """Pixels, and their derivatives by errors, by points, and by a turn of the camera, if any."""
+    errors, turned = 6 + known.extras, known.attitude_sigma > 0.0 or known.camera_bias
+    to_camera = _to_camera(known, cores, epochs)
+    if compiled.available():
+        from debrisest.problems.camera_range.projection_loops import pixels
+
+        implied = known.attitude == "implied"
+        by_position = turn_by_position(cores[..., POSITION]) if implied else to_camera
+        return pixels(
+            np.ascontiguousarray(cores),
+            np.ascontiguousarray(points[:, 0]),
+            np.ascontiguousarray(to_camera),
+            np.ascontiguousarray(by_position),
+            (known.focal, _NEAREST),
+            implied,
+            known.camera_bias,
+            (errors, 3 * turned),
+        )
     turn = to_camera @ quaternion.to_matrix(cores[..., Q])
     arm = points @ np.swapaxes(turn, -1, -2)
-    return to_camera, turn, arm - _seen(to_camera, rho)[..., None, :], arm
+    point = arm - _seen(to_camera, cores[..., POSITION])[..., None, :]
+    point[..., 2] = np.maximum(point[..., 2], _NEAREST)
+    by_point = pinhole.derivative_through(point, known.focal, turn[..., None, :, :])
+    by_position = _by_position(known, cores, to_camera, arm)
+    by_core = np.zeros((*by_point.shape[:-1], errors))
+    by_core[..., TURN] = cross(points[..., None, :], by_point)
+    by_core[..., SHIFT] = pinhole.derivative_through(point, known.focal, by_position)
+    by_bias = by_point[..., :0]
+    if turned:
+        by_bias = pinhole.derivative_through(point, known.focal, matrix_of_cross(point))
+    if known.camera_bias:
+        by_core[..., -3:] = by_bias
+    return pinhole.project(point, known.focal), by_core, by_point, by_bias
+
+
+def _to_camera(known: CameraRangeGeometry, cores: Array, epochs: IntArray) -> Array:
+    """``R_ch (run, epoch, 3, 3)``."""
+    if known.attitude == "implied":
+        return np.swapaxes(camera_axes(cores[..., POSITION]), -1, -2)
+    to_camera = np.swapaxes(known.camera[:, epochs], -1, -2)
+    if known.camera_bias:
+        to_camera = quaternion.to_matrix(quaternion.exp(-cores[..., -3:])) @ to_camera
+    return to_camera
 
 
 def _seen(to_camera: Array, rho: Array) -> Array:
@@ -119,11 +144,11 @@ def _by_position(known: CameraRangeGeometry, cores: Array, to_camera: Array, arm
 def _with_range(known: CameraRangeGeometry, found: Rows, cores: Array) -> Rows:
     """Add the range to the centre of mass, or to a surface that is nearer by a constant."""
     rho = cores[..., POSITION]
-    distance = np.linalg.norm(rho, axis=-1, keepdims=True)
+    distance = np.sqrt((rho * rho).sum(-1, keepdims=True))
     by_core = np.zeros((*distance.shape, found.by_core.shape[-1]))
-    by_core[..., POSITION_ERROR] = (rho / distance)[..., None, :]
+    by_core[..., SHIFT] = (rho / distance)[..., None, :]
     if known.range_model == "bias":
-        by_core[..., CORE_ERRORS] = -1.0
+        by_core[..., 6] = -1.0
         distance = distance - cores[..., CORE : CORE + 1]
     return found._replace(common=distance, common_by_core=by_core)
 
@@ -136,8 +161,8 @@ def _with_ranges(found: Rows, cores: Array, points: Array) -> Rows:
     along = away / distance
     by_point = along @ turn
     by_core = np.zeros((*by_point.shape[:-1], found.by_core.shape[-1]))
-    by_core[..., ATTITUDE_ERROR] = cross(points, by_point)
-    by_core[..., POSITION_ERROR] = -along
+    by_core[..., TURN] = cross(points, by_point)
+    by_core[..., SHIFT] = -along
     shared = np.concatenate([found.shared, np.zeros_like(found.shared[..., :1, :])], axis=-2)
     return found._replace(
         shown=np.concatenate([found.shown, distance], axis=-1),

@@ -178,7 +178,7 @@ def dense_information(model, case, frames, noise):
     for k in frames:
         rows = model.rows(cores[:, k : k + 1], case.points[:, None], np.array([k]))
         for run in range(len(core)):
-            by_start = transitions[run, k] @ by_parameters[run]
+            by_start = (transitions[run, k] @ by_parameters[run])[model.shown_by]
             h = np.zeros((23, 47))
             h[:22, :14] = rows.by_core[run, 0].reshape(22, -1) @ by_start
             for i in range(11):
