@@ -151,6 +151,7 @@ def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) 
         iterations,
         relaxation=search.relaxation,
         tolerance=0.0,
+        single=True,
         start=None if parents is None else _start(parents, length, window),
     )
     score = search.score(recovered)

@@ -58,6 +58,7 @@ class SignSearch(Keys):
 class BasisPursuit(PursuitKeys, AttitudeRecovery):
     """Attitude of each epoch from its points, signs by search, the rest by basis pursuit."""
 
+    version = 2
     finished = RecoveryStatus.CONVERGED
     kind: Literal["basis_pursuit"]
     signs: SignSearch = SignSearch()
