@@ -12,8 +12,8 @@ from debrisest.recovery.fourier import analyse, share_taken, soft_threshold, syn
 
 _ITERATIONS_BETWEEN_CHECKS = 10
 _NUMBERS_IN_CACHE = 100_000
-_ROWS_OF_A_TRANSFORM = 4
-"""How many vector instructions take at once in single precision; those beyond go one by one."""
+_LANES = 4
+"""Rows that are transformed together in single precision; what is left over goes one by one."""
 _SINGLE_TOLERANCE = 1e-4
 """What single precision can be asked for, with some digits to spare."""
 
@@ -54,7 +54,7 @@ def solve(lasso: Lasso, v: ComplexArray, effort: Effort) -> tuple[IntArray, Bool
     """
     done, met = np.zeros(len(v), np.int64), np.zeros(len(v), bool)
     size = _NUMBERS_IN_CACHE // (lasso.length * max(1, v.shape[1]))
-    size = max(1, size // _ROWS_OF_A_TRANSFORM) * _ROWS_OF_A_TRANSFORM
+    size = max(_LANES, size // _LANES * _LANES)
     for begin in range(0, len(v), size):
         block = slice(begin, begin + size)
         met[block] = _solve(lasso.rows(block), v[block], done[block], effort)
@@ -79,10 +79,11 @@ def _advance(
 ) -> BoolArray:
     """Advance u, v and `done` in place until each row has converged or is at the limit."""
     met, row = np.zeros(len(u), bool), np.flatnonzero(done < effort.iterations)
+    runs = np.arange(_whole_vectors(len(row), u.shape[1])) < len(row)
+    row = np.resize(row, len(runs))
     lasso, now = lasso.rows(row), u[row].astype(np.result_type(lasso.samples, np.complex64))
     near = effort.tolerance * _norm(lasso.samples) / lasso.length**0.5
     steps = _ITERATIONS_BETWEEN_CHECKS if effort.tolerance > 0 else effort.iterations
-    runs = np.ones(len(row), bool)
     while runs.any():
         count = min(steps, effort.iterations - int(done[row[runs]].max()))
         found, gap = _iterate(lasso, now, count, effort.relaxation)
@@ -91,18 +92,23 @@ def _advance(
         out = row[ends]
         u[out], v[out], met[out] = now[ends], found[ends], (gap <= near)[ends]
         runs &= ~ends
-        stays = _filled(runs)
+        stays = _filled(runs, u.shape[1])
         if not stays.all():
             lasso, now = lasso.rows(stays), now[stays]
             row, near, runs = row[stays], near[stays], runs[stays]
     return met
 
 
-def _filled(runs: BoolArray) -> BoolArray:
+def _filled(runs: BoolArray, components: int) -> BoolArray:
     """Mark also some rows (row) that have ended, for full vectors: what they still do is lost."""
-    stays = runs.copy()
-    stays[np.flatnonzero(~runs)[: -int(runs.sum()) % _ROWS_OF_A_TRANSFORM]] = True
+    stays, count = runs.copy(), int(runs.sum())
+    stays[np.flatnonzero(~runs)[: _whole_vectors(count, components) - count]] = True
     return stays
+
+
+def _whole_vectors(rows: int, components: int) -> int:
+    """Return a number of rows, at least as many, that fills vectors; several components do."""
+    return rows if components > 1 else -(-rows // _LANES) * _LANES
 
 
 def _iterate(

@@ -2,18 +2,20 @@
 
 q and -q are the same attitude, and nothing but the smoothness of the whole signal tells which of
 the two continues it across a gap. All signs of the first pieces are tried, the best hypotheses
-are kept, then the pieces are added one at a time, each with both signs.
+are kept, then the pieces are added one at a time, each with both signs. Where the recovery without
+a piece is clear about its sign, the other one is not tried (the paper tries all).
 """
 
 from collections.abc import Callable
 from itertools import product
 from math import ceil
+from types import EllipsisType
 from typing import NamedTuple
 
 import numpy as np
 import scipy
 
-from debrisest.arrays import Array, ComplexArray, IntArray
+from debrisest.arrays import Array, BoolArray, ComplexArray, IntArray
 from debrisest.recovery.basis_pursuit import Recovered, basis_pursuit
 from debrisest.recovery.fourier import analyse, l1_norm, multiplicity, synthesise
 
@@ -24,6 +26,8 @@ Watch = Callable[[IntArray, Array, Recovered, Array], None]
 """Is told the runs, and the signs, recoveries, penalties (run, hypothesis, ...) tried for them."""
 
 _DOUBLINGS = 3
+_DOUBT = 10.0
+"""Penalties by which a hypothesis is predicted to be worse than the best, and is dropped."""
 
 
 def lasso_score(solution: Recovered) -> Array:
@@ -68,7 +72,19 @@ class _Beam(NamedTuple):
     """Signs (run, hypothesis, piece) of the pieces so far."""
     coefficients: ComplexArray
     """Their recovery, half spectra (run, hypothesis, length // 2 + 1)."""
+    score: Array
+    """Their penalties (run, hypothesis), infinite where there is no hypothesis."""
     length: int
+
+    def take(self, index: IntArray) -> "_Beam":
+        """Return the hypotheses (run, hypothesis) of an index."""
+        each = index[..., None]
+        return _Beam(
+            np.take_along_axis(self.sign, each, axis=1),
+            np.take_along_axis(self.coefficients, each, axis=1),
+            np.take_along_axis(self.score, index, axis=1),
+            self.length,
+        )
 
 
 def search_signs(
@@ -131,10 +147,11 @@ def _exhaust(search: _Search, count: int, iterations: int) -> _Beam:
 
 def _extend(search: _Search, beam: _Beam, iterations: int) -> _Beam:
     """The best hypotheses after one more piece, added to each with both signs."""
-    plus = np.ones_like(beam.sign[..., :1])
-    children = [np.concatenate([beam.sign, newest], axis=-1) for newest in (plus, -plus)]
-    parents = beam._replace(coefficients=np.concatenate([beam.coefficients] * 2, axis=1))
-    return _best(search, np.concatenate(children, axis=1), iterations, parents)
+    runs, hypotheses = beam.score.shape
+    parents = beam.take(np.tile(np.arange(hypotheses), (runs, 2)))
+    newest = np.tile(np.repeat([1.0, -1.0], hypotheses), (runs, 1))
+    sign = np.concatenate([parents.sign, newest[..., None]], axis=-1)
+    return _best(search, sign, iterations, parents)
 
 
 def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) -> _Beam:
@@ -142,8 +159,11 @@ def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) 
     window = int(np.flatnonzero(search.piece == sign.shape[-1] - 1)[-1]) + 1
     piece = search.piece[:window]
     length = _length(search, window)
+    samples = search.samples[:, None, :window] * sign[..., piece]
+    start = None if parents is None else _grown(parents, length, window)
+    tried = ... if start is None else _plausible(search, samples, piece, start)
     recovered = basis_pursuit(
-        search.samples[:, None, :window] * sign[..., piece],
+        samples[tried],
         piece >= 0,
         length,
         search.penalty,
@@ -152,14 +172,32 @@ def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) 
         relaxation=search.relaxation,
         tolerance=0.0,
         single=True,
-        start=None if parents is None else _start(parents, length, window),
+        start=None if start is None else start.coefficients[tried],
     )
-    score = search.score(recovered)
+    half = np.zeros((*sign.shape[:2], length // 2 + 1), recovered.coefficients.dtype)
+    found = _Beam(sign, half, np.full(sign.shape[:2], np.inf), length)
+    found.score[tried] = search.score(recovered)
+    found.coefficients[tried] = recovered.coefficients
     if search.watch is not None:
-        search.watch(search.runs, sign, recovered, score)
-    order = np.argsort(score, axis=-1, kind="stable")[:, : search.beam, None]
-    kept = np.take_along_axis(recovered.coefficients, order, axis=1)
-    return _Beam(np.take_along_axis(sign, order, axis=1), kept, length)
+        search.watch(search.runs, sign, recovered, found.score)
+    return found.take(np.argsort(found.score, axis=-1, kind="stable")[:, : search.beam])
+
+
+def _plausible(
+    search: _Search, samples: Array, piece: IntArray, start: _Beam
+) -> BoolArray | EllipsisType:
+    """Which hypotheses (run, hypothesis) are recovered, with these parents: maybe all.
+
+    The lasso of a hypothesis is predicted to be that of its parent and, at the newest piece, half
+    the squared misfit of the parent's recovery, from which it starts.
+    """
+    if search.score is not lasso_score or search.watch is not None:
+        return ...
+    newest = piece == piece.max()
+    shown = synthesise(start.coefficients, start.length, len(piece))[..., newest]
+    predicted = start.score + 0.5 * np.sum((samples[..., newest] - shown) ** 2, axis=-1)
+    least = predicted.min(axis=-1, keepdims=True)
+    return np.asarray(predicted <= least + _DOUBT * search.penalty)
 
 
 def _length(search: _Search, window: int) -> int:
@@ -174,9 +212,9 @@ def _length(search: _Search, window: int) -> int:
     return length
 
 
-def _start(parents: _Beam, length: int, window: int) -> ComplexArray:
-    """The parents' coefficients, for dictionaries and windows that have grown."""
+def _grown(parents: _Beam, length: int, window: int) -> _Beam:
+    """The parents in a dictionary and a window that have grown."""
     if length == parents.length:
-        return parents.coefficients
+        return parents
     known = synthesise(parents.coefficients, parents.length, min(parents.length, window))
-    return analyse(known, length) / length
+    return parents._replace(coefficients=analyse(known, length) / length, length=length)
