@@ -9,7 +9,6 @@ a piece is clear about its sign, the other one is not tried (the paper tries all
 from collections.abc import Callable
 from itertools import product
 from math import ceil
-from types import EllipsisType
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +21,8 @@ from debrisest.recovery.fourier import analyse, l1_norm, multiplicity, synthesis
 Score = Callable[[Recovered], Array]
 """Penalty (...) of recovered signals; the hypothesis with the lowest one is believed."""
 
-Watch = Callable[[IntArray, Array, Recovered, Array], None]
-"""Is told the runs, and the signs, recoveries, penalties (run, hypothesis, ...) tried for them."""
+Watch = Callable[[IntArray, Array, Array, Array], None]
+"""Is told the runs, and the signs, signals, penalties (run, hypothesis, ...) tried for them."""
 
 _DOUBLINGS = 3
 _DOUBT = 10.0
@@ -75,16 +74,6 @@ class _Beam(NamedTuple):
     score: Array
     """Their penalties (run, hypothesis), infinite where there is no hypothesis."""
     length: int
-
-    def take(self, index: IntArray) -> "_Beam":
-        """Return the hypotheses (run, hypothesis) of an index."""
-        each = index[..., None]
-        return _Beam(
-            np.take_along_axis(self.sign, each, axis=1),
-            np.take_along_axis(self.coefficients, each, axis=1),
-            np.take_along_axis(self.score, index, axis=1),
-            self.length,
-        )
 
 
 def search_signs(
@@ -147,11 +136,9 @@ def _exhaust(search: _Search, count: int, iterations: int) -> _Beam:
 
 def _extend(search: _Search, beam: _Beam, iterations: int) -> _Beam:
     """The best hypotheses after one more piece, added to each with both signs."""
-    runs, hypotheses = beam.score.shape
-    parents = beam.take(np.tile(np.arange(hypotheses), (runs, 2)))
-    newest = np.tile(np.repeat([1.0, -1.0], hypotheses), (runs, 1))
-    sign = np.concatenate([parents.sign, newest[..., None]], axis=-1)
-    return _best(search, sign, iterations, parents)
+    plus = np.ones_like(beam.sign[..., :1])
+    children = [np.concatenate([beam.sign, newest], axis=-1) for newest in (plus, -plus)]
+    return _best(search, np.concatenate(children, axis=1), iterations, beam)
 
 
 def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) -> _Beam:
@@ -160,8 +147,12 @@ def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) 
     piece = search.piece[:window]
     length = _length(search, window)
     samples = search.samples[:, None, :window] * sign[..., piece]
-    start = None if parents is None else _grown(parents, length, window)
-    tried = ... if start is None else _plausible(search, samples, piece, start)
+    tried, start = np.ones(sign.shape[:2], bool), None
+    if parents is not None:
+        known = _grown(parents, length, window)
+        tried = _plausible(search, samples, piece, known)
+        run, hypothesis = np.nonzero(tried)
+        start = known.coefficients[run, hypothesis % known.score.shape[1]]
     recovered = basis_pursuit(
         samples[tried],
         piece >= 0,
@@ -172,30 +163,34 @@ def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) 
         relaxation=search.relaxation,
         tolerance=0.0,
         single=True,
-        start=None if start is None else start.coefficients[tried],
+        start=start,
     )
-    half = np.zeros((*sign.shape[:2], length // 2 + 1), recovered.coefficients.dtype)
-    found = _Beam(sign, half, np.full(sign.shape[:2], np.inf), length)
-    found.score[tried] = search.score(recovered)
-    found.coefficients[tried] = recovered.coefficients
+    score = np.full(tried.shape, np.inf)
+    score[tried] = search.score(recovered)
     if search.watch is not None:
-        search.watch(search.runs, sign, recovered, found.score)
-    return found.take(np.argsort(found.score, axis=-1, kind="stable")[:, : search.beam])
+        search.watch(search.runs, sign, recovered.signal.reshape(*tried.shape, -1), score)
+    best = np.argsort(score, axis=-1, kind="stable")[:, : search.beam]
+    row = np.take_along_axis(np.cumsum(tried).reshape(tried.shape) - 1, best, axis=1)
+    return _Beam(
+        np.take_along_axis(sign, best[..., None], axis=1),
+        recovered.coefficients[row],
+        np.take_along_axis(score, best, axis=1),
+        length,
+    )
 
 
-def _plausible(
-    search: _Search, samples: Array, piece: IntArray, start: _Beam
-) -> BoolArray | EllipsisType:
-    """Which hypotheses (run, hypothesis) are recovered, with these parents: maybe all.
+def _plausible(search: _Search, samples: Array, piece: IntArray, parents: _Beam) -> BoolArray:
+    """Tell the hypotheses (run, hypothesis) that are recovered: first all with +, then with -.
 
     The lasso of a hypothesis is predicted to be that of its parent and, at the newest piece, half
     the squared misfit of the parent's recovery, from which it starts.
     """
     if search.score is not lasso_score or search.watch is not None:
-        return ...
+        return np.ones(samples.shape[:2], bool)
     newest = piece == piece.max()
-    shown = synthesise(start.coefficients, start.length, len(piece))[..., newest]
-    predicted = start.score + 0.5 * np.sum((samples[..., newest] - shown) ** 2, axis=-1)
+    shown = synthesise(parents.coefficients, parents.length, len(piece))[..., newest]
+    misfit = samples[..., newest] - np.concatenate([shown, shown], axis=1)
+    predicted = np.tile(parents.score, 2) + 0.5 * np.sum(misfit**2, axis=-1)
     least = predicted.min(axis=-1, keepdims=True)
     return np.asarray(predicted <= least + _DOUBT * search.penalty)
 
