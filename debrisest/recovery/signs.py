@@ -15,11 +15,9 @@ import numpy as np
 import scipy
 
 from debrisest.arrays import Array, BoolArray, ComplexArray, IntArray
-from debrisest.recovery.basis_pursuit import Recovered, basis_pursuit
-from debrisest.recovery.fourier import analyse, l1_norm, multiplicity, synthesise
-
-Score = Callable[[Recovered], Array]
-"""Penalty (...) of recovered signals; the hypothesis with the lowest one is believed."""
+from debrisest.recovery.basis_pursuit import basis_pursuit
+from debrisest.recovery.fourier import analyse, synthesise
+from debrisest.recovery.score import Score, lasso_score
 
 Watch = Callable[[IntArray, Array, Array, Array], None]
 """Is told the runs, and the signs, signals, penalties (run, hypothesis, ...) tried for them."""
@@ -27,26 +25,6 @@ Watch = Callable[[IntArray, Array, Array, Array], None]
 _DOUBLINGS = 3
 _DOUBT = 10.0
 """Penalties by which a hypothesis is predicted to be worse than the best, and is dropped."""
-
-
-def lasso_score(solution: Recovered) -> Array:
-    """Penalty (...): the objective of the lasso (Eq. 19), which the recovery minimises."""
-    return solution.objective
-
-
-def sparsity_score(
-    solution: Recovered,
-    count_weight: float = 1.0,
-    modulus_weight: float = 10.0,
-    threshold: float = 1e-2,
-) -> Array:
-    """Penalty (...) of Eq. 28, const1 |c|_0 + const2 |c|_1 of the recovered signal's spectrum.
-
-    The paper gives neither the weights nor the modulus from which a coefficient is not zero.
-    """
-    large = (np.abs(solution.coefficients) > threshold) @ multiplicity(solution.length)
-    modulus = l1_norm(solution.coefficients, solution.length)
-    return count_weight * large + modulus_weight * modulus
 
 
 class _Search(NamedTuple):
