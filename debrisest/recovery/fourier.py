@@ -56,21 +56,20 @@ def l1_norm(coefficients: ComplexArray, length: int, *, joint: bool = False) -> 
 
 
 def soft_threshold(
-    coefficients: ComplexArray,
-    threshold: float,
-    out: ComplexArray | None = None,
-    *,
-    joint: bool = False,
+    coefficients: ComplexArray, threshold: float, *, joint: bool = False
 ) -> ComplexArray:
     """Coefficients with moduli reduced by `threshold` > 0, exactly zero where they are below.
 
     Jointly, a line's modulus is the 2-norm over the components (..., component, line).
     """
-    factor = _moduli(coefficients, joint)
-    np.maximum(factor, threshold, out=factor)
-    np.divide(-threshold, factor, out=factor)
-    factor += 1.0
-    return np.multiply(coefficients, factor, out=out)
+    return coefficients * (1.0 - share_taken(coefficients, threshold, joint=joint))
+
+
+def share_taken(coefficients: ComplexArray, threshold: float, *, joint: bool = False) -> Array:
+    """Share of each coefficient (..., line) that `soft_threshold` takes: 1 where it is below."""
+    share = _moduli(coefficients, joint)
+    np.maximum(share, threshold, out=share)
+    return np.divide(threshold, share, out=share)
 
 
 def _moduli(coefficients: ComplexArray, joint: bool) -> Array:

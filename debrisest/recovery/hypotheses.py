@@ -3,7 +3,6 @@
 import numpy as np
 
 from debrisest.arrays import Array, IntArray
-from debrisest.recovery.basis_pursuit import Recovered
 
 
 class Hypotheses:
@@ -20,7 +19,7 @@ class Hypotheses:
         self.signal = np.full((runs, most, epochs), np.nan)
         """Recovered signals (run, hypothesis, time), up to the end of the last piece."""
 
-    def __call__(self, runs: IntArray, sign: Array, recovered: Recovered, score: Array) -> None:
+    def __call__(self, runs: IntArray, sign: Array, signal: Array, score: Array) -> None:
         """Keep what was tried for ``runs``, all of whom have as many hypotheses so far."""
         most = self.score.shape[1]
         begin = int(np.isfinite(self.score[runs[0]]).sum())
@@ -28,5 +27,5 @@ class Hypotheses:
         tried = slice(begin, end)
         self.score[runs, tried] = score[:, : end - begin]
         self.sign[runs, tried, : sign.shape[-1]] = sign[:, : end - begin]
-        epochs = recovered.signal.shape[-1]
-        self.signal[runs, tried, :epochs] = recovered.signal[:, : end - begin]
+        epochs = signal.shape[-1]
+        self.signal[runs, tried, :epochs] = signal[:, : end - begin]

@@ -5,6 +5,7 @@ from the frequencies by linear least squares, which leaves Gauss-Newton equation
 alone. They need nothing but inner products of waves and of their slopes.
 """
 
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
@@ -24,7 +25,7 @@ class Signals(NamedTuple):
     weight: Array
     """Of each epoch (run, time)."""
 
-    def take(self, runs: IntArray) -> "Signals":
+    def take(self, runs: IntArray | slice) -> "Signals":
         """Return some of the runs."""
         return Signals(self.samples[runs], self.weight[runs])
 
@@ -60,30 +61,28 @@ class LineFit(NamedTuple):
 
 def lines_at(fit: LineFit, count: int) -> Array:
     """Return the fitted signals (run, time, component) at all `count` epochs."""
-    signal: Array = _waves(fit.frequency, _epochs(count)) @ fit.amplitude
+    signal: Array = _waves(fit.frequency, count) @ fit.amplitude
     return signal
 
 
 def fit_lines(signals: Signals, frequency: Array) -> LineFit:
     """Return the least-squares fit at frequencies (run, line)."""
-    lines, epochs = frequency.shape[-1], _epochs(signals.samples.shape[1])
-    weight = signals.weight[..., None]
-    wave = _waves(frequency, epochs)
-    slope = np.concatenate([-wave[..., 1 + lines :], wave[..., 1 : 1 + lines]], axis=-1)
-    slope *= epochs[:, None]
-    weighted = _transposed(wave * weight)
-    normal = weighted @ wave
-    normal += _RIDGE * np.sum(weight, axis=1, keepdims=True) * np.eye(normal.shape[-1])
-    amplitude = np.asarray(np.linalg.solve(normal, weighted @ signals.samples))
-    residual = signals.samples - wave @ amplitude
-    cross, slope_weighted = weighted @ slope, _transposed(slope * weight)
-    projected = slope_weighted @ slope - _transposed(cross) @ np.linalg.solve(normal, cross)
-    moving = amplitude[:, 1:]
+    waves = 1 + 2 * frequency.shape[-1]
+    root = np.sqrt(signals.weight)[..., None]
+    columns = _waves_and_slopes(frequency, signals.samples.shape[1]) * root
+    samples = signals.samples * root
+    wave, products = columns[..., :waves], _transposed(columns) @ columns
+    normal, cross = products[:, :waves, :waves], products[:, :waves, waves:]
+    normal += _RIDGE * np.sum(root**2, axis=1, keepdims=True) * np.eye(waves)
+    amplitude = np.asarray(np.linalg.solve(normal, _transposed(wave) @ samples))
+    residual = samples - wave @ amplitude
+    projected = products[:, waves:, waves:] - _transposed(cross) @ np.linalg.solve(normal, cross)
+    moving, pull = amplitude[:, 1:], _transposed(columns[..., waves:]) @ residual
     return LineFit(
         frequency=frequency,
         amplitude=amplitude,
-        cost=np.sum(residual**2 * weight, axis=(-2, -1)),
-        descent=_of_lines(np.sum(moving * (slope_weighted @ residual), axis=-1), -1),
+        cost=np.sum(residual**2, axis=(-2, -1)),
+        descent=_of_lines(np.sum(moving * pull, axis=-1), -1),
         curvature=_of_lines(_of_lines(projected * (moving @ _transposed(moving)), -1), -2),
     )
 
@@ -127,11 +126,27 @@ def _epochs(count: int) -> Array:
     return np.arange(count, dtype=np.float64) - 0.5 * (count - 1)
 
 
-def _waves(frequency: Array, epochs: Array) -> Array:
-    """Return constant, cosines and sines (run, time, 1 + 2 line)."""
-    phase = epochs[:, None] * frequency[:, None, :]
-    constant = np.ones((*phase.shape[:-1], 1))
-    return np.concatenate([constant, np.cos(phase), np.sin(phase)], axis=-1)
+def _waves_and_slopes(frequency: Array, count: int) -> Array:
+    """Return `_waves`, and the derivatives of those that move (run, time, 1 + 4 line)."""
+    lines, epochs = frequency.shape[-1], _epochs(count)[:, None]
+    columns = np.empty((len(frequency), count, 1 + 4 * lines))
+    wave, slope = np.split(columns, [1 + 2 * lines], axis=-1)
+    wave[...] = _waves(frequency, count)
+    np.multiply(wave[..., 1 + lines :], -epochs, out=slope[..., :lines])
+    np.multiply(wave[..., 1 : 1 + lines], epochs, out=slope[..., lines:])
+    return columns
+
+
+def _waves(frequency: Array, count: int) -> Array:
+    """Return constant, cosines and sines (run, time, 1 + 2 line) of angles that are added."""
+    epochs, step = _epochs(count), ceil(count**0.5)
+    coarse = np.exp(1j * epochs[::step, None] * frequency[:, None, :])
+    fine = np.exp(1j * np.arange(step)[:, None] * frequency[:, None, :])
+    turning = coarse[:, :, None] * fine[:, None]
+    turning = turning.reshape(len(frequency), -1 if turning.size else count, frequency.shape[-1])
+    turning = turning[:, :count]
+    constant = np.ones((len(frequency), count, 1))
+    return np.concatenate([constant, turning.real, turning.imag], axis=-1)
 
 
 def _transposed(matrix: Array) -> Array:

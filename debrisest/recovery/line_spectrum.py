@@ -23,6 +23,7 @@ _PADDING = 4
 """Points of the periodogram per resolution: its peak is near enough to be refined."""
 _DEVIATIONS = 5.0
 """Of the correlation of successive white residuals, beyond which they are not white."""
+_RUNS_IN_CACHE = 4
 _PRECISION = 1e-16
 """Share of a signal's energy below which what is left is rounding."""
 
@@ -63,9 +64,22 @@ def line_spectrum(samples: Array, weight: Array | None = None, most: int = 30) -
     frequencies) ln N with N the number of samples. A run does not depend on the others.
     """
     signals = _signals(samples, np.ones(samples.shape[:-1]) if weight is None else weight)
+    found = LineSpectrum(
+        np.zeros(samples.shape),
+        np.full((len(samples), most), np.nan),
+        np.where(signals.epochs > 0, LineStatus.LINE_LIMIT, LineStatus.NO_SAMPLE),
+    )
+    for begin in range(0, len(samples), _RUNS_IN_CACHE):
+        block = slice(begin, begin + _RUNS_IN_CACHE)
+        part = LineSpectrum(found.signal[block], found.frequency[block], found.status[block])
+        _find(part, signals.take(block), most)
+    return found
+
+
+def _find(found: LineSpectrum, signals: Signals, most: int) -> None:
+    """Put lines and status of each run in their place."""
+    status = found.status
     room = np.minimum(most, (signals.epochs - 1) // 3)
-    status = np.where(signals.epochs > 0, LineStatus.LINE_LIMIT, LineStatus.NO_SAMPLE)
-    found = LineSpectrum(np.zeros(samples.shape), np.full((len(samples), most), np.nan), status)
     active = np.flatnonzero(signals.epochs)
     fit = fit_lines(signals.take(active), np.empty((active.size, 0)))
     _keep(found, active, fit)
@@ -82,7 +96,6 @@ def line_spectrum(samples: Array, weight: Array | None = None, most: int = 30) -
         _keep(found, active, fit)
     white = _is_white(signals, found.signal)
     status[(status == LineStatus.COMPLETE) & ~white] = LineStatus.NOT_WHITE
-    return found
 
 
 def _signals(samples: Array, weight: Array) -> Signals:

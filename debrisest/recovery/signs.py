@@ -2,7 +2,8 @@
 
 q and -q are the same attitude, and nothing but the smoothness of the whole signal tells which of
 the two continues it across a gap. All signs of the first pieces are tried, the best hypotheses
-are kept, then the pieces are added one at a time, each with both signs.
+are kept, then the pieces are added one at a time, each with both signs. Where the recovery without
+a piece is clear about its sign, the other one is not tried (the paper tries all).
 """
 
 from collections.abc import Callable
@@ -13,37 +14,17 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from debrisest.arrays import Array, ComplexArray, IntArray
-from debrisest.recovery.basis_pursuit import Recovered, basis_pursuit
-from debrisest.recovery.fourier import analyse, l1_norm, multiplicity, synthesise
+from debrisest.arrays import Array, BoolArray, ComplexArray, IntArray
+from debrisest.recovery.basis_pursuit import basis_pursuit
+from debrisest.recovery.fourier import analyse, synthesise
+from debrisest.recovery.score import Score, lasso_score
 
-Score = Callable[[Recovered], Array]
-"""Penalty (...) of recovered signals; the hypothesis with the lowest one is believed."""
-
-Watch = Callable[[IntArray, Array, Recovered, Array], None]
-"""Is told the runs, and the signs, recoveries, penalties (run, hypothesis, ...) tried for them."""
+Watch = Callable[[IntArray, Array, Array, Array], None]
+"""Is told the runs, and the signs, signals, penalties (run, hypothesis, ...) tried for them."""
 
 _DOUBLINGS = 3
-
-
-def lasso_score(solution: Recovered) -> Array:
-    """Penalty (...): the objective of the lasso (Eq. 19), which the recovery minimises."""
-    return solution.objective
-
-
-def sparsity_score(
-    solution: Recovered,
-    count_weight: float = 1.0,
-    modulus_weight: float = 10.0,
-    threshold: float = 1e-2,
-) -> Array:
-    """Penalty (...) of Eq. 28, const1 |c|_0 + const2 |c|_1 of the recovered signal's spectrum.
-
-    The paper gives neither the weights nor the modulus from which a coefficient is not zero.
-    """
-    large = (np.abs(solution.coefficients) > threshold) @ multiplicity(solution.length)
-    modulus = l1_norm(solution.coefficients, solution.length)
-    return count_weight * large + modulus_weight * modulus
+_DOUBT = 10.0
+"""Penalties by which a hypothesis is predicted to be worse than the best, and is dropped."""
 
 
 class _Search(NamedTuple):
@@ -68,6 +49,8 @@ class _Beam(NamedTuple):
     """Signs (run, hypothesis, piece) of the pieces so far."""
     coefficients: ComplexArray
     """Their recovery, half spectra (run, hypothesis, length // 2 + 1)."""
+    score: Array
+    """Their penalties (run, hypothesis), infinite where there is no hypothesis."""
     length: int
 
 
@@ -133,8 +116,7 @@ def _extend(search: _Search, beam: _Beam, iterations: int) -> _Beam:
     """The best hypotheses after one more piece, added to each with both signs."""
     plus = np.ones_like(beam.sign[..., :1])
     children = [np.concatenate([beam.sign, newest], axis=-1) for newest in (plus, -plus)]
-    parents = beam._replace(coefficients=np.concatenate([beam.coefficients] * 2, axis=1))
-    return _best(search, np.concatenate(children, axis=1), iterations, parents)
+    return _best(search, np.concatenate(children, axis=1), iterations, beam)
 
 
 def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) -> _Beam:
@@ -142,8 +124,15 @@ def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) 
     window = int(np.flatnonzero(search.piece == sign.shape[-1] - 1)[-1]) + 1
     piece = search.piece[:window]
     length = _length(search, window)
+    samples = search.samples[:, None, :window] * sign[..., piece]
+    tried, start = np.ones(sign.shape[:2], bool), None
+    if parents is not None:
+        known = _grown(parents, length, window)
+        tried = _plausible(search, samples, piece, known)
+        run, hypothesis = np.nonzero(tried)
+        start = known.coefficients[run, hypothesis % known.score.shape[1]]
     recovered = basis_pursuit(
-        search.samples[:, None, :window] * sign[..., piece],
+        samples[tried],
         piece >= 0,
         length,
         search.penalty,
@@ -151,14 +140,37 @@ def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) 
         iterations,
         relaxation=search.relaxation,
         tolerance=0.0,
-        start=None if parents is None else _start(parents, length, window),
+        single=True,
+        start=start,
     )
-    score = search.score(recovered)
+    score = np.full(tried.shape, np.inf)
+    score[tried] = search.score(recovered)
     if search.watch is not None:
-        search.watch(search.runs, sign, recovered, score)
-    order = np.argsort(score, axis=-1, kind="stable")[:, : search.beam, None]
-    kept = np.take_along_axis(recovered.coefficients, order, axis=1)
-    return _Beam(np.take_along_axis(sign, order, axis=1), kept, length)
+        search.watch(search.runs, sign, recovered.signal.reshape(*tried.shape, -1), score)
+    best = np.argsort(score, axis=-1, kind="stable")[:, : search.beam]
+    row = np.take_along_axis(np.cumsum(tried).reshape(tried.shape) - 1, best, axis=1)
+    return _Beam(
+        np.take_along_axis(sign, best[..., None], axis=1),
+        recovered.coefficients[row],
+        np.take_along_axis(score, best, axis=1),
+        length,
+    )
+
+
+def _plausible(search: _Search, samples: Array, piece: IntArray, parents: _Beam) -> BoolArray:
+    """Tell the hypotheses (run, hypothesis) that are recovered: first all with +, then with -.
+
+    The lasso of a hypothesis is predicted to be that of its parent and, at the newest piece, half
+    the squared misfit of the parent's recovery, from which it starts.
+    """
+    if search.score is not lasso_score or search.watch is not None:
+        return np.ones(samples.shape[:2], bool)
+    newest = piece == piece.max()
+    shown = synthesise(parents.coefficients, parents.length, len(piece))[..., newest]
+    misfit = samples[..., newest] - np.concatenate([shown, shown], axis=1)
+    predicted = np.tile(parents.score, 2) + 0.5 * np.sum(misfit**2, axis=-1)
+    least = predicted.min(axis=-1, keepdims=True)
+    return np.asarray(predicted <= least + _DOUBT * search.penalty)
 
 
 def _length(search: _Search, window: int) -> int:
@@ -173,9 +185,9 @@ def _length(search: _Search, window: int) -> int:
     return length
 
 
-def _start(parents: _Beam, length: int, window: int) -> ComplexArray:
-    """The parents' coefficients, for dictionaries and windows that have grown."""
+def _grown(parents: _Beam, length: int, window: int) -> _Beam:
+    """The parents in a dictionary and a window that have grown."""
     if length == parents.length:
-        return parents.coefficients
+        return parents
     known = synthesise(parents.coefficients, parents.length, min(parents.length, window))
-    return analyse(known, length) / length
+    return parents._replace(coefficients=analyse(known, length) / length, length=length)

@@ -202,6 +202,29 @@ def test_a_signal_does_not_depend_on_its_companions(count):
             assert alone.objective == pytest.approx(other.objective[k], rel=1e-13)
 
 
+@pytest.mark.parametrize("joint", [False, True])
+def test_single_precision_gives_the_same_to_its_digits(joint):
+    samples, observed = joint_problem(3)
+    fixed = {"iterations": 40, "tolerance": 0.0, "joint": joint}
+    double = basis_pursuit(samples, observed, 48, 0.5, **fixed)
+    single = basis_pursuit(samples, observed, 48, 0.5, **fixed, single=True)
+    assert single.coefficients.dtype == np.complex64
+    assert 0 < np.abs(single.signal - double.signal).max() < 1e-5
+    np.testing.assert_allclose(single.objective, double.objective, rtol=1e-5)
+
+
+def test_a_small_tolerance_is_met_in_double_precision():
+    """The same optimum as by double precision from the beginning."""
+    samples, observed = problem(5)
+    short = basis_pursuit(samples, observed, 48, 0.5, iterations=3000, tolerance=1e-3)
+    exact = basis_pursuit(samples, observed, 48, 0.5, iterations=3000, tolerance=0.0)
+    tight = basis_pursuit(samples, observed, 48, 0.5, iterations=3000, tolerance=1e-12)
+    assert short.coefficients.dtype == np.complex128
+    assert short.iterations < tight.iterations < 3000
+    np.testing.assert_allclose(tight.signal, exact.signal, atol=1e-11)
+    np.testing.assert_allclose(short.signal, exact.signal, atol=1e-2)
+
+
 def test_batch_axes_are_kept_and_masks_are_broadcast():
     samples = np.random.default_rng(0).standard_normal((2, 3, 24))
     observed = problem(1)[1]

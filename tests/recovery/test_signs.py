@@ -8,10 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from debrisest.recovery.basis_pursuit import Recovered
+from debrisest.recovery import signs
+from debrisest.recovery.basis_pursuit import Recovered, basis_pursuit
 from debrisest.recovery.hypotheses import Hypotheses
 from debrisest.recovery.pieces import pieces
-from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
+from debrisest.recovery.score import lasso_score, sparsity_score
+from debrisest.recovery.signs import search_signs
 
 seeds = st.integers(0, 2**32 - 1)
 TIME = 240
@@ -61,6 +63,27 @@ def test_the_answer_follows_the_score():
     assert (search_signs(runs, piece, lasso_score) == right).all()
     wrong = search_signs(runs, piece, lambda solution: -lasso_score(solution))
     assert (wrong != right).any(axis=-1).all()
+
+
+def test_hypotheses_that_are_passed_over_are_those_that_would_lose(monkeypatch):
+    """The same score under another name has all of them recovered, and nothing comes out else."""
+    rng = np.random.default_rng(12)
+    masks = [mask_with_gaps(rng, 9) for _ in range(12)]
+    signals = [smooth_signal(rng) + 0.1 * rng.standard_normal(TIME) for _ in masks]
+    flips = rng.choice([-1.0, 1.0], (12, 1, 9))
+    runs = np.stack([flipped(*x)[0] for x in zip(signals, masks, flips)])
+    piece, recovered = pieces(np.stack(masks)), []
+
+    def counted(samples, *keys, **options):
+        recovered.append(samples[..., 0].size)
+        return basis_pursuit(samples, *keys, **options)
+
+    monkeypatch.setattr(signs, "basis_pursuit", counted)
+    all_of_them = search_signs(runs, piece, lambda solution: lasso_score(solution))
+    assert sum(recovered) == 12 * (16 + 4 * 4)
+    recovered.clear()
+    np.testing.assert_array_equal(search_signs(runs, piece), all_of_them)
+    assert 12 * (16 + 4) <= sum(recovered) < 12 * (16 + 3 * 4)
 
 
 def test_score_zero_for_all_keeps_the_first_hypotheses():

@@ -14,7 +14,8 @@ from debrisest.parts.recoveries.pursuit import Count, PursuitKeys
 from debrisest.recovery.basis_pursuit import Recovered, RecoveryStatus
 from debrisest.recovery.exact_recovery import exact_recovery_coefficient
 from debrisest.recovery.hypotheses import Hypotheses
-from debrisest.recovery.signs import lasso_score, search_signs, sparsity_score
+from debrisest.recovery.score import lasso_score, sparsity_score
+from debrisest.recovery.signs import search_signs
 from debrisest.roles import Keys, NonNegative, Positive
 
 
@@ -58,6 +59,7 @@ class SignSearch(Keys):
 class BasisPursuit(PursuitKeys, AttitudeRecovery):
     """Attitude of each epoch from its points, signs by search, the rest by basis pursuit."""
 
+    version = 2
     finished = RecoveryStatus.CONVERGED
     kind: Literal["basis_pursuit"]
     signs: SignSearch = SignSearch()

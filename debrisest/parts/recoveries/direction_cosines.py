@@ -15,6 +15,7 @@ from debrisest.recovery.direction_cosines import attitude_of, entries, signs_fro
 class DirectionCosines(PursuitKeys, AttitudeRecovery):
     """Attitude of each epoch from its points, its nine direction cosines by basis pursuit."""
 
+    version = 2
     finished = RecoveryStatus.CONVERGED
     kind: Literal["direction_cosines"]
 
