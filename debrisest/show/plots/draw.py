@@ -26,7 +26,7 @@ from debrisest.show.plots.gather import (
     single_runs,
 )
 from debrisest.show.plots.kinds import FIGURES, Kind
-from debrisest.show.plots.style import collected_after
+from debrisest.show.plots.style import collected_after, style
 from debrisest.show.plots.tumble import tumbles, write_tumble
 from debrisest.show.tables.tabulate import tabulate
 
@@ -57,7 +57,7 @@ def draw_all(
     for name, source in sources(scenario, out, wanted, asked):
         called = "-".join((name, *source.names))
         drawn = True
-        with collected_after():
+        with style(), collected_after():
             shaded = FIGURES[name].shaded
             paths = list(write(draw(name, source), folder, called, asked.formats, shaded))
         yield from paths

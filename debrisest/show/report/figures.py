@@ -11,7 +11,7 @@ from debrisest.show.plots.draw import Asked, draw, sources
 from debrisest.show.plots.kinds import FIGURES, Kind
 from debrisest.show.plots.png import png
 from debrisest.show.plots.room import make_room
-from debrisest.show.plots.style import collected_after
+from debrisest.show.plots.style import collected_after, style
 
 _DPI = 90
 
@@ -41,7 +41,7 @@ def pictures(
         if of(kind, source.names) in seen:
             continue
         seen.add(of(kind, source.names))
-        with collected_after():
+        with style(), collected_after():
             figure = draw(kind, source)
             make_room(figure)
             content = png(figure, _DPI, FIGURES[kind].shaded)
