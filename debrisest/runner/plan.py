@@ -70,6 +70,8 @@ class _Planned:
     """How many runs of each file that is there have their trajectories."""
     growing: set[Path] = field(default_factory=set)
     """Files of which nothing is computed anew but runs that they lack."""
+    known: dict[tuple[str, ...], tuple[dict[str, Any], str]] = field(default_factory=dict)
+    """Inputs and key of each stage."""
 
     def steps(self, estimators: Sequence[str], runs: int) -> list[Step]:
         """Return the steps of so many runs, stage by stage."""
@@ -129,7 +131,7 @@ class _Planned:
         self, stage: str, estimator: str, upstream: tuple[Step, ...], first: int, runs: int
     ) -> Step:
         case = self.case if upstream else self.case.simulation
-        inputs = STAGES[stage].inputs(case, estimator)
+        inputs, key = self._told_of(stage, estimator, case, tuple(step.key for step in upstream))
         address = Address(case.scenario_name, case.name, stage, estimator, first)
         step = Step(
             case=case,
@@ -139,7 +141,7 @@ class _Planned:
             runs=runs,
             whole_runs=min(runs, max(0, self.case.scenario.whole_runs - first)),
             inputs=inputs,
-            key=_key(inputs, [step.key for step in upstream]),
+            key=key,
         )
         depth = store.Depth.BYTES if stage in self.verified else store.Depth.LABEL
         found = store.inspect(step.path, depth)
@@ -153,6 +155,16 @@ class _Planned:
         there = reason and not asked and not notice
         other = same_file(step, self.out, self.beside, depth, self._told) if there else None
         return replace(step, reason=reason, notice=notice, same=other)
+
+    def _told_of(
+        self, stage: str, estimator: str, case: Case, upstream: tuple[str, ...]
+    ) -> tuple[dict[str, Any], str]:
+        """Return the inputs and the key that all files of a stage have."""
+        of = (stage, estimator, *upstream)
+        if of not in self.known:
+            inputs = STAGES[stage].inputs(case, estimator)
+            self.known[of] = inputs, _key(inputs, upstream)
+        return self.known[of]
 
     @cached_property
     def _told(self) -> str:
@@ -184,6 +196,6 @@ def _within(stage: str, last: str) -> bool:
     return order.index(stage) <= order.index(last)
 
 
-def _key(inputs: dict[str, Any], upstream: list[str]) -> str:
+def _key(inputs: dict[str, Any], upstream: Sequence[str]) -> str:
     """Hash inputs in their order, since the order of features and of sensors matters."""
     return hashlib.sha256(json.dumps([inputs, upstream]).encode()).hexdigest()
