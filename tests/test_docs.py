@@ -11,8 +11,8 @@ import yaml
 
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.draws import Stream
+from debrisest.runner.cut import RUNS_PER_FILE
 from debrisest.runner.stages.pipeline import STAGES
-from debrisest.runner.step import RUNS_PER_FILE
 from debrisest.scenario.document import merge, parse
 from debrisest.scenario.load import load_scenario
 from debrisest.scenario.models import scenario_model

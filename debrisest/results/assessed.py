@@ -1,44 +1,35 @@
-"""The errors of all runs of one case and estimator, and the figures that tables make of them."""
+"""The errors of all runs of one case and estimator, read when they are asked for."""
 
-from collections.abc import Collection, Iterable, Mapping
-from typing import NamedTuple, TypeAlias
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray, Data
+from debrisest.arrays import Array
 from debrisest.assessment.consistency import dof_of_runs
 from debrisest.assessment.statistics import per_run, window_mask
 from debrisest.results.results import Results
-from debrisest.scenario.table_keys import Divergence
+from debrisest.results.runs import Runs
 from debrisest.scenario.window import window_of
 from debrisest.vocabulary import VOCABULARY, table_scale
 
-SIMULATED = "-"
-"""Stands for the estimator in cells of what was simulated; no estimator can have this name."""
-
-_OF_FILES = {"run", "time_s", "failure"}
+OF_FILES = {"run", "time_s", "failure"}
 """What every file holds beside its own datasets."""
 
 
-class Result(NamedTuple):
-    """All runs of one case and estimator: errors by quantity in SI, and the reasons of failures.
+@dataclass(frozen=True)
+class Result(Runs):
+    """All runs of one case and estimator, or of a file: errors by quantity in SI."""
 
-    What was simulated takes the place of errors where the estimator is SIMULATED.
-    """
-
-    errors: Data
+    errors: Mapping[str, Array]
     times: Array
-    failures: dict[int, str]
+    failures: Mapping[int, str]
     runs: int
 
-    def shows(self, dataset: str) -> bool:
-        """Return whether there is a figure, or would be one if not all runs had failed."""
-        return dataset in self.errors or len(self.failures) == self.runs
-
-    @property
-    def good(self) -> BoolArray:
-        """Return which runs (run,) gave a result."""
-        return np.array([run not in self.failures for run in range(self.runs)], dtype=bool)
+    def has(self, dataset: str) -> bool:
+        """Return whether any run has a dataset."""
+        return dataset in self.errors
 
     def figures(self, dataset: str, statistic: str, window: str) -> Array:
         """Return one figure per run (run,), in the unit of the tables; NaN where it failed."""
@@ -49,7 +40,7 @@ class Result(NamedTuple):
 
     def freedom(self, dataset: str, statistic: str, window: str) -> Array:
         """Return the degrees of freedom of each figure (run,), 0 where it is no chi-square."""
-        degrees = self._degrees(dataset, window)
+        degrees = self.degrees(dataset, window)
         law = VOCABULARY[dataset].chi_square
         if degrees is None or law is None:
             return np.zeros(self.runs)
@@ -57,10 +48,10 @@ class Result(NamedTuple):
 
     def seen(self, dataset: str, window: str) -> bool:
         """Return whether any run can have a figure: with degrees of freedom, if it needs some."""
-        degrees = self._degrees(dataset, window)
+        degrees = self.degrees(dataset, window)
         return degrees is None or bool((degrees > 0).any())
 
-    def _degrees(self, dataset: str, window: str) -> Array | None:
+    def degrees(self, dataset: str, window: str) -> Array | None:
         """Return the degrees of freedom of each epoch (run, epoch) of a window, where there are."""
         law = VOCABULARY[dataset].chi_square
         if law is None or law.freedom not in self.errors:
@@ -68,39 +59,56 @@ class Result(NamedTuple):
         inside = window_mask(self.times, window_of(window, float(self.times[-1])))
         return np.nan_to_num(self.errors[law.freedom][:, inside])
 
-    def diverged(self, rules: Iterable[Divergence]) -> BoolArray:
-        """Return which runs (run,) broke one of the rules."""
-        lost = np.zeros(self.runs, dtype=bool)
-        for rule in rules:
-            if rule.quantity in self.errors:
-                lost |= ~(self.figures(rule.quantity, rule.statistic, rule.window) <= rule.above)
-        return lost & self.good
-
 
 Assessed: TypeAlias = Mapping[tuple[str, str], Result]
 """Results by case and estimator."""
 
 
-def assessed(
-    results: Results, simulated: Collection[str] = (), names: Collection[str] = VOCABULARY
-) -> dict[tuple[str, str], Result]:
-    """Return what was assessed of the named quantities, by case and estimator.
-
-    The datasets ``simulated`` of the simulations come under the estimator SIMULATED.
-    """
-    laws = (VOCABULARY[name].chi_square for name in names)
-    wanted = {*_OF_FILES, *names, *(law.freedom for law in laws if law is not None)}
-    found: dict[tuple[str, str], Result] = {}
-    for case in results.cases:
-        if simulated and results.stages(case):
-            found[case, SIMULATED] = _result(results.load(case, names={*_OF_FILES, *simulated}))
-        for estimator in results.estimators(case):
-            if "assess" in results.stages(case, estimator):
-                found[case, estimator] = _result(results.load(case, estimator, "assess", wanted))
-    return found
+def assessed(results: Results) -> dict[tuple[str, str], Result]:
+    """Return what was assessed, by case and estimator."""
+    return {
+        (case, estimator): _result(results, case, estimator)
+        for case in results.cases
+        for estimator in results.estimators(case)
+        if "assess" in results.stages(case, estimator)
+    }
 
 
-def _result(data: Data) -> Result:
-    failures = {run: why for run, why in enumerate(data["failure"].tolist()) if why}
-    errors = {name: values for name, values in data.items() if name not in _OF_FILES}
-    return Result(errors, data["time_s"], failures, len(data["run"]))
+def _result(results: Results, case: str, estimator: str) -> Result:
+    told = results.load(case, estimator, "assess", OF_FILES)
+    names = results.datasets(case, estimator, "assess") - OF_FILES
+
+    def load(name: str) -> Array:
+        return np.asarray(results.load(case, estimator, "assess", {name})[name])
+
+    return Result(_Read(names, load), told["time_s"], failed(told["failure"]), len(told["run"]))
+
+
+def failed(failure: Array, first: int = 0) -> dict[int, str]:
+    """Return the reasons of the runs that failed, by their places from ``first`` on."""
+    return {run: why for run, why in enumerate(failure.tolist(), first) if why}
+
+
+@dataclass(frozen=True)
+class _Read(Mapping[str, Array]):
+    """Datasets that are read when they are used first."""
+
+    names: set[str]
+    load: Callable[[str], Array]
+    there: dict[str, Array] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Array:
+        if name not in self.names:
+            raise KeyError(name)
+        if name not in self.there:
+            self.there[name] = self.load(name)
+        return self.there[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(sorted(self.names))
+
+    def __len__(self) -> int:
+        return len(self.names)

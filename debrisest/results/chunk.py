@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from debrisest.arrays import Data
 from debrisest.results import store
 from debrisest.results.address import Address
+from debrisest.results.told import axes_told
 from debrisest.results.trajectories import is_trajectory
 from debrisest.vocabulary import VOCABULARY
 
@@ -26,11 +27,24 @@ class Chunk(NamedTuple):
         """Return whether it has the trajectories of the run of this index in it."""
         return index < int(self.attributes.get("whole_runs", self.runs))
 
+    @property
+    def datasets(self) -> set[str]:
+        """Return the names of its datasets."""
+        return self._axes.keys() & VOCABULARY.keys()
+
+    @property
+    def _axes(self) -> dict[str, int]:
+        """Return how many axes each of its datasets has, as its label tells."""
+        return axes_told(self.attributes["datasets"])
+
+    def datasets_of_run(self, index: int) -> set[str]:
+        """Return the names of the datasets of the run of this index that are kept."""
+        whole, stage, axes = self.is_whole(index), self.address.stage, self._axes
+        return {n for n in self.datasets if whole or not is_trajectory(n, stage, axes[n])}
+
     def read_run(self, index: int) -> Data:
         """Return the datasets of the run of this index, without trajectories that are not kept."""
-        data, stage = self.read(first=index, runs=index + 1), self.address.stage
-        whole = self.is_whole(index)
-        return {n: v for n, v in data.items() if whole or not is_trajectory(n, stage, v.ndim)}
+        return self.read(self.datasets_of_run(index), index, index + 1)
 
     def read(
         self, names: Container[str] = VOCABULARY, first: int = 0, runs: int | None = None

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from debrisest.results.address import Address
-from debrisest.results.assessed import assessed
+from debrisest.results.figured import Figure, figured
 from debrisest.results.results import Results
 from debrisest.scenario.table_keys import Divergence
 
@@ -16,7 +16,8 @@ def lost(results: Results, rules: Iterable[Divergence]) -> set[Address]:
 
 
 def _diverged(results: Results, rules: list[Divergence]) -> Iterator[Address]:
-    found = assessed(results, names={rule.quantity for rule in rules})
+    figures = {Figure(rule.quantity, rule.statistic, rule.window) for rule in rules}
+    found = figured(results, lambda _: figures)
     for (case, estimator), result in found.items():
         runs = np.flatnonzero(result.diverged(rules))
         stage = results.stages(case, estimator)[-2:][0]

@@ -97,6 +97,26 @@ class Results:
         counts = [min(chunk.runs, last) for chunk, last in wanted]
         return joined((chunk.read(names, runs=last) for chunk, last in wanted), counts)
 
+    def parts(
+        self,
+        case: str,
+        estimator: str = "",
+        stage: str = "",
+        names: Container[str] = VOCABULARY,
+    ) -> Iterator[Data]:
+        """Yield the datasets of one file of a stage after the other, as ``load`` does of all."""
+        for chunk in self._chosen(case, estimator, stage):
+            yield chunk.read(names)
+
+    def datasets(self, case: str, estimator: str, stage: str) -> set[str]:
+        """Return the names of the datasets of a stage."""
+        return set().union(*(chunk.datasets for chunk in self._chosen(case, estimator, stage)))
+
+    def datasets_of_run(self, case: str, estimator: str, run: int) -> set[str]:
+        """Return the names of those that ``one_run`` returns."""
+        places = ((one, run - one.address.first_run) for one in self._of_run(case, estimator))
+        return set().union(*(one.datasets_of_run(at) for one, at in places if 0 <= at < one.runs))
+
     def dataset(self, case: str, estimator: str = "", stage: str = "") -> "xarray.Dataset":
         """Return what ``load`` does as an xarray Dataset with coordinates, units and names."""
         from debrisest.results.labelled import labelled

@@ -32,7 +32,7 @@ from debrisest.results.written import image_of
 from debrisest.revision import commit
 from debrisest.vocabulary import VOCABULARY
 
-SCHEMA_VERSION = 5
+SCHEMA_VERSION = 6
 _BROKEN = (ValueError, OSError, RuntimeError, KeyError, TypeError, AttributeError)
 """What reading an HDF5 file raises that is not as it should be."""
 

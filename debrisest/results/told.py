@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Container, Mapping
 from contextlib import suppress
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,12 @@ _OF_STEPS = ("runs", "inputs", "scenario")
 def forms(data: Data) -> str:
     """Return the type and the lengths of all datasets as the attribute ``datasets``."""
     return json.dumps({name: form(value) for name, value in data.items()})
+
+
+@lru_cache
+def axes_told(datasets: str) -> dict[str, int]:
+    """Return how many axes each dataset has, of the attribute ``datasets``."""
+    return {name: len(words.split()) - 1 for name, words in json.loads(datasets).items()}
 
 
 def form(values: Any) -> str:

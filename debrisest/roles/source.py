@@ -29,16 +29,13 @@ class SimulationPart(Part):
     """The axes and origin of datasets whose name does not tell them."""
     tried: ClassVar[bool] = False
     """Whether the first two epochs are simulated when a scenario is read, for it to be refused."""
+    runs_together: ClassVar[int] = 100
+    """How many runs it simulates in one call, as memory allows; no result depends on it."""
 
     @classmethod
     def can_give(cls) -> tuple[str, ...]:
         """Return the datasets that parts of this kind give, of all three groups."""
         return (*cls.truths, *cls.knows, *cls.measures)
-
-    @property
-    def runs_together(self) -> int:
-        """Return how many runs it simulates for the price of a few; no result depends on it."""
-        return 1
 
     @abstractmethod
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:

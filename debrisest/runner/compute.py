@@ -17,6 +17,7 @@ from debrisest.arrays import Data
 from debrisest.counted import within
 from debrisest.errors import UserError
 from debrisest.results import store
+from debrisest.results.address import Address
 from debrisest.results.image import as_stored
 from debrisest.results.status import difference
 from debrisest.results.trajectories import thinned
@@ -79,6 +80,16 @@ def _write(step: Step, data: Data, seconds: float) -> None:
         "cpu_s": round(seconds * step.runs, 4),
     }
     store.write(step.path, kept, _attributes(step) | told, scenario.frames)
+    _remove_others(step)
+
+
+def _remove_others(step: Step) -> None:
+    """Remove files that began with later ones of the runs of a file: another filter cut them."""
+    for path in step.path.parent.iterdir():
+        other = Address.of(path)
+        same = other and other[2:4] == step.address[2:4]
+        if other and same and step.address.first_run < other.first_run < step.end:
+            path.unlink(missing_ok=True)
 
 
 def _declared(data: Data) -> Data:
@@ -94,8 +105,10 @@ def _read(step: Step) -> Data:
         return {"run": step.address.first_run + np.arange(step.runs, dtype=float)}
     data: Data = {}
     for upstream in step.upstream:
-        expected = upstream.attributes | {"runs": step.runs}
-        found = store.read(upstream.path, step.runs, expected=expected)
+        before = step.address.first_run - upstream.address.first_run
+        end = before + step.runs
+        expected = upstream.attributes | {"runs": end}
+        found = store.read(upstream.path, end, first=before, expected=expected)
         data |= _seen_later(found, upstream)
     return data
 

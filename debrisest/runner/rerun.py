@@ -80,7 +80,9 @@ def _steps(
     chosen = [estimator] if estimator else None
     selection = Selection(first + runs, None, chosen, attributes["stage"])
     steps = plan(scenario, folder, selection)
-    return [step for step in steps if step.address.first_run == first]
+    of = (attributes["stage"], estimator, first)
+    own = next(step for step in steps if step.address[2:] == of)
+    return [step for step in steps if step.path in {own.path, *(up.path for up in own.upstream)}]
 
 
 def _name(path: Path, step: Step) -> str:

@@ -40,7 +40,11 @@ class Schedule:
         first = self._steps[self._ready[0]]
         alike = self._alike[first.kin]
         share = -(-(len(self._ready) - len(self._taken)) // self._width)
-        chosen = [heappop(alike) for _ in range(min(first.together, share, len(alike)))]
+        chosen, runs = [heappop(alike)], first.runs
+        while alike and len(chosen) < share:
+            if (runs := runs + self._steps[alike[0]].runs) > first.together:
+                break
+            chosen.append(heappop(alike))
         self._taken.update(chosen)
         return [self._steps[index] for index in chosen]
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from debrisest.errors import UserError, allowed_names
 from debrisest.results.address import Address
-from debrisest.results.assessed import SIMULATED
+from debrisest.results.runs import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.schema import MOST_RUNS
 

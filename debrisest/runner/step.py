@@ -7,8 +7,6 @@ from debrisest.results.status import Wanted
 from debrisest.runner.stages.pipeline import STAGES
 from debrisest.scenario.case import Case
 
-RUNS_PER_FILE = 20
-
 
 @dataclass(frozen=True, kw_only=True)
 class Step(Wanted):
@@ -29,12 +27,16 @@ class Step(Wanted):
         return bool(self.reason) and self.same is None
 
     @property
+    def end(self) -> int:
+        """Return the run after its last."""
+        return self.address.first_run + self.runs
+
+    @property
     def kin(self) -> tuple[str, ...]:
         """Return what steps have in common that differ in their runs alone."""
         return self.address[:-1]
 
     @property
     def together(self) -> int:
-        """Return how many of them are best computed in one call."""
-        runs = STAGES[self.address.stage].runs_together(self.case, self.address.estimator)
-        return max(1, runs // RUNS_PER_FILE)
+        """Return how many runs of such steps are best computed in one call."""
+        return STAGES[self.address.stage].runs_together(self.case, self.address.estimator)

@@ -18,7 +18,12 @@ def steps_of(parents: list[set[int]]) -> list[Any]:
         upstream = tuple(steps[one % index] for one in sorted(before)) if index else ()
         steps.append(
             SimpleNamespace(
-                path=Path(str(index)), upstream=upstream, reason="due", kin=index % 3, together=2
+                path=Path(str(index)),
+                upstream=upstream,
+                reason="due",
+                kin=index % 3,
+                together=2,
+                runs=1,
             )
         )
     return steps

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from debrisest.results import store, trajectories
-from debrisest.runner import plan
+from debrisest.runner import cut
 
 RUNS = ("--case", "slow", "--runs", 23)
 
@@ -32,7 +32,7 @@ def test_any_size_interrupted_anywhere(
     size: int, written: int, small: Path, tmp_path: Path, sweep: Callable, by_two: bytes,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    monkeypatch.setattr(plan, "RUNS_PER_FILE", size)
+    monkeypatch.setattr(cut, "RUNS_PER_FILE", size)
     monkeypatch.setattr(trajectories, "_SMALL", 0)
     original, left = store.write, [None] * written
 

@@ -32,6 +32,7 @@ class Efficient(FilterPart):
 
     takes = "replay_model"
     needs_truth = True
+    runs_together = 100
     kind: Literal["efficient"]
     smoother: bool = False
     """Bound of the smoother."""
@@ -93,6 +94,7 @@ class LinearisedAtTruth(FilterPart):
 
     takes = "scan_model"
     needs_truth = True
+    runs_together = 200
     kind: Literal["linearised_at_truth"]
     keep_s: KeptTimes = []
 

@@ -40,6 +40,7 @@ class Images(SimulationPart):
     knows = ("camera_matrix", "lens_distortion", "rig_rotation", "rig_translation")
     measures = ("measured_image",)
     libraries = ("cv2", "embreex")
+    runs_together = 20
     kind: Literal["images"]
     width_px: Size = 640
     """Columns."""

@@ -43,8 +43,6 @@ _INPUTS = (
 )
 
 _UNCERTAINTY = Uncertainty()
-_SHARED = 200  # runs that are simulated together where all are alike, for the sake of memory
-_DRAWN = 100
 
 
 class PointingControl(SimulationPart):
@@ -121,11 +119,6 @@ class PointingControl(SimulationPart):
     def _drawn(self) -> bool:
         """Whether each run has errors of its own."""
         return bool(self.errors == "white" or self.inertia_error or self.torque_error)
-
-    @property
-    def runs_together(self) -> int:
-        """Return how many runs share one loop."""
-        return _DRAWN if self._drawn else _SHARED
 
     def simulate(self, data: Data, clock: Clock, draws: Draws) -> Data:
         """Return attitude, sections, exact pixels, and what the controller did.

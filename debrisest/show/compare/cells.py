@@ -9,7 +9,7 @@ import pandas as pd
 
 from debrisest.arrays import Array
 from debrisest.assessment.paired import FEWEST, difference
-from debrisest.results.assessed import SIMULATED, Result
+from debrisest.results.runs import SIMULATED, Runs
 from debrisest.scenario.table_keys import Table
 from debrisest.show.compare.sides import Comparison, Pairing
 from debrisest.show.tables.figures import dataset_of, figures, keys_of, unit_of
@@ -53,9 +53,9 @@ def _row(
         return None
     other = pairs[members[0], mine]
     parts = [
-        (found.first.assessed[case, mine], found.second.assessed[case, other]) for case in members
+        (found.first.figured[case, mine], found.second.figured[case, other]) for case in members
     ]
-    if not all(dataset in part.errors for both in parts for part in both):
+    if not all(part.has(dataset) for both in parts for part in both):
         return None
     pairing = _weakest(found.pairing(case, mine, other) for case in members)
     groups = [_counted(found, table, key, both, pairing is not Pairing.NONE) for both in parts]
@@ -78,7 +78,7 @@ def _weakest(pairings: Iterator[Pairing]) -> Pairing:
 
 
 def _counted(
-    found: Comparison, table: Table, key: CellKey, both: tuple[Result, Result], paired: bool
+    found: Comparison, table: Table, key: CellKey, both: tuple[Runs, Runs], paired: bool
 ) -> tuple[Array, Array]:
     """Return the figures (run,) of both sides that count; of pairs, those that count on both."""
     tables = found.first.tables

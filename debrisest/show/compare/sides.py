@@ -2,19 +2,21 @@
 
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
 
 from debrisest.errors import UserError, allowed_names
-from debrisest.results.assessed import SIMULATED, Assessed, assessed
 from debrisest.results.chunk import Chunk
+from debrisest.results.figured import AllRuns, figured
 from debrisest.results.open import open_results
 from debrisest.results.results import Results
+from debrisest.results.runs import SIMULATED
 from debrisest.scenario.schema import SIMULATED as OF_SIMULATION
 from debrisest.scenario.table_keys import Tables
+from debrisest.show.tables.figures import figures_of
 
 _OF_DATA = (*(key for key in OF_SIMULATION if key != "runs"), "starts", "measured")
 
@@ -32,6 +34,8 @@ class Side:
 
     def __init__(self, folder: Path) -> None:
         self.results: Results = open_results(folder)
+        self.asked: Tables | None = None
+        """The tables whose figures are compared; by default its own."""
         self.told: dict[tuple[str, str], Chunk] = {}
         for chunk in self.results.chunks:
             case, stage, estimator = chunk.address[1:4]
@@ -50,11 +54,11 @@ class Side:
         return Tables.model_validate(yaml.safe_load(chunk.attributes["scenario"])["tables"])
 
     @cached_property
-    def assessed(self) -> Assessed:
-        """Return the errors of all runs."""
-        layout = self.tables.layout
-        simulated = {name for t in layout if t.stage == "simulate" for name in t.quantities}
-        return assessed(self.results, simulated)
+    def figured(self) -> AllRuns:
+        """Return the figures of all runs that the tables show."""
+        tables = self.asked or self.tables
+        simulated = {n for t in tables.layout if t.stage == "simulate" for n in t.quantities}
+        return figured(self.results, partial(figures_of, tables), simulated)
 
     @property
     def estimators(self) -> list[str]:
@@ -104,6 +108,7 @@ def comparison(folders: Sequence[Path], estimators: Sequence[str]) -> Comparison
     """
     sides = [Side(folder) for folder in folders]
     first, second = sides[0], sides[-1]
+    second.asked = first.tables
     if len(folders) > 2 or (len(folders) == 1 and len(estimators) != 2) or len(estimators) > 2:
         raise UserError(
             "give two folders of results, or one folder and two estimators: "

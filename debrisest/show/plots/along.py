@@ -3,18 +3,19 @@
 from collections import Counter
 from collections.abc import Iterator
 
-from debrisest.results.assessed import Assessed
+import pandas as pd
+
+from debrisest.results.runs import SIMULATED
 from debrisest.scenario.curves import FEWEST, curves
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.error_over_value import COLUMNS, ONE_PANEL
 from debrisest.show.plots.gather import Source
-from debrisest.show.tables.cells import cells
 
 
-def along_curves(scenario: LoadedScenario, results: Assessed) -> Iterator[Source]:
+def along_curves(scenario: LoadedScenario, cells: pd.DataFrame) -> Iterator[Source]:
     """Yield the cells of each set of cases that are alike but for one number."""
     found = curves(scenario.cases)
-    rows = cells(scenario, results if found else {})
+    rows = cells[cells["estimator"] != SIMULATED]
     alike = Counter(curve.key for curve in found)
     for curve in found:
         told = rows.assign(key=curve.key, value=rows["case"].map(curve.values))

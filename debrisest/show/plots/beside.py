@@ -1,5 +1,7 @@
 """What the tables have beside the errors of a case: units, bound, published values."""
 
+from collections.abc import Iterable
+
 from debrisest.results.assessed import Assessed
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.gather import Beside
@@ -7,13 +9,16 @@ from debrisest.show.plots.histograms import window
 from debrisest.show.tables.published import published_values
 
 
-def beside(scenario: LoadedScenario, results: Assessed, case: str, estimator: str) -> Beside:
+def beside(
+    scenario: LoadedScenario, results: Assessed, case: str, estimator: str, names: Iterable[str]
+) -> Beside:
     """Return what stands beside a figure of the runs' mean errors over the settled time."""
     units: dict[str, str] = {}
     for table in scenario.common.tables.layout:
         units |= table.units
     bound = results.get((case, scenario.common.estimators[estimator].bound))
-    errors = {} if bound is None else {n: v[bound.good] for n, v in bound.errors.items()}
+    there = {} if bound is None else bound.errors
+    errors = {name: there[name][bound.good] for name in names if bound and name in there}
     settled = window(results[case, estimator].times)
     published = {
         key.quantity: entry.value

@@ -1,6 +1,7 @@
 """The figures that a scenario's results allow, and their files."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,12 +11,14 @@ from debrisest.errors import UserError, allowed_names
 from debrisest.results.assessed import Assessed, assessed
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
+from debrisest.scenario.curves import curves
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.plots.along import along_curves
 from debrisest.show.plots.beside import beside
 from debrisest.show.plots.files import USUAL, write
 from debrisest.show.plots.gather import (
     Source,
+    Wants,
     all_runs,
     chosen_run,
     of_estimators,
@@ -23,8 +26,9 @@ from debrisest.show.plots.gather import (
     single_runs,
 )
 from debrisest.show.plots.kinds import FIGURES, Kind
-from debrisest.show.plots.style import collected_after
+from debrisest.show.plots.style import collected_after, style
 from debrisest.show.plots.tumble import tumbles, write_tumble
+from debrisest.show.tables.tabulate import tabulate
 
 
 class Asked(NamedTuple):
@@ -35,6 +39,8 @@ class Asked(NamedTuple):
     run: int | None = None
     """Of figures of one run; by default the first that did not fail."""
     formats: Sequence[str] = USUAL
+    wants: Callable[[str, tuple[str, ...]], bool] = lambda kind, names: True
+    """Whether a figure of a kind, of these case and estimator, is; asked before data are read."""
 
 
 ALL = Asked()
@@ -51,7 +57,7 @@ def draw_all(
     for name, source in sources(scenario, out, wanted, asked):
         called = "-".join((name, *source.names))
         drawn = True
-        with collected_after():
+        with style(), collected_after():
             shaded = FIGURES[name].shaded
             paths = list(write(draw(name, source), folder, called, asked.formats, shaded))
         yield from paths
@@ -113,35 +119,49 @@ def sources(
     of_one_run = {name: kind for name, kind in chosen.items() if kind.of_one_run}
     of_simulation = {name: kind for name, kind in chosen.items() if kind.of_simulation}
     if of_one_run:
-        for source in single_runs(scenario, results, errors, asked.run):
-            yield from ((name, source) for name in _suiting(of_one_run, source))
+        wants = partial(_wanted, of_one_run, asked)
+        for source in single_runs(scenario, results, errors, asked.run, wants):
+            yield from ((name, source) for name in wants(source.names, set(source.data)))
     if of_simulation:
-        for source in simulations(scenario, results, asked.run):
-            yield from ((name, source) for name in _suiting(of_simulation, source))
+        wants = partial(_wanted, of_simulation, asked)
+        for source in simulations(scenario, results, asked.run, wants):
+            yield from ((name, source) for name in wants(source.names, set(source.data)))
     for name, kind in chosen.items():
+        own = partial(_wanted, {name: kind}, asked)
         if kind.of_all_runs:
-            yield from ((name, source) for source in _of_all_runs(scenario, errors, kind))
-        if kind.of_tables:
-            yield from ((name, source) for source in along_curves(scenario, errors))
+            yield from ((name, source) for source in _of_all_runs(scenario, errors, kind, own))
+        if kind.of_tables and curves(scenario.cases):
+            cells, _ = tabulate(scenario, out, wanted)
+            yield from ((name, source) for source in along_curves(scenario, cells))
         if kind.of_estimators:
-            yield from ((name, source) for source in of_estimators(scenario, errors, kind.needs))
+            found = of_estimators(scenario, errors, kind.needs, own)
+            yield from ((name, source) for source in found)
 
 
-def _suiting(figures: dict[str, Kind], source: Source) -> list[str]:
-    """Return the figures whose datasets are all there."""
-    return [name for name, kind in figures.items() if set(kind.needs) <= set(source.data)]
+def _wanted(
+    figures: dict[str, Kind], asked: Asked, names: tuple[str, ...], datasets: set[str]
+) -> list[str]:
+    """Return the figures that are wanted of these names, and whose datasets are all there."""
+    able = [name for name, kind in figures.items() if set(kind.needs) <= datasets]
+    return [name for name in able if asked.wants(name, names)]
 
 
-def _of_all_runs(scenario: LoadedScenario, results: Assessed, kind: Kind) -> Iterator[Source]:
+def _of_all_runs(
+    scenario: LoadedScenario, results: Assessed, kind: Kind, wants: Wants
+) -> Iterator[Source]:
     """Return all runs of an estimator: of each case by itself, or of those that have a mean."""
     if scenario.common.tables.means and not kind.of_each_case:
-        yield from all_runs(scenario, results, kind.needs)
+        yield from all_runs(scenario, results, kind.needs, wants)
         return
     for (case, estimator), result in results.items():
         quantities = [*kind.needs, *(name for name in kind.also if name in result.errors)]
+        if not wants((case, estimator), set(quantities)):
+            continue
         for source in all_runs(scenario, {(case, estimator): result}, quantities):
             context = source.context.replace("1 case,", f"case {case},", 1)
             found = source._replace(names=(case, estimator), context=context)
             if kind.beside is not None:
-                found = found._replace(beside=beside(scenario, results, case, estimator))
+                found = found._replace(
+                    beside=beside(scenario, results, case, estimator, quantities)
+                )
             yield found

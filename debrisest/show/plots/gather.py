@@ -1,7 +1,7 @@
 """The data of figures: of one run, of a simulation, or of all runs."""
 
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -21,6 +21,8 @@ class Beside(NamedTuple):
     """Published medians of the runs' mean errors over the settled time, in the tables' unit."""
 
 
+Wants: TypeAlias = Callable[[tuple[str, ...], set[str]], object]
+"""Whether a figure is drawn that has these names, where there are these datasets."""
 ALONE = Beside()
 _NONE = np.zeros(0)
 
@@ -35,31 +37,44 @@ class Source(NamedTuple):
     beside: Beside = ALONE
 
 
+def always(names: tuple[str, ...], datasets: set[str]) -> bool:
+    """Return that whatever can be drawn is."""
+    return True
+
+
 def single_runs(
-    scenario: LoadedScenario, results: Results, errors: Assessed, run_asked: int | None = None
+    scenario: LoadedScenario,
+    results: Results,
+    errors: Assessed,
+    run_asked: int | None = None,
+    wants: Wants = always,
 ) -> Iterator[Source]:
     """Return a run of every case and estimator that has it: by default the first that did well."""
     for case in results.cases:
         for estimator in results.estimators(case):
             run = chosen_run(results, case, estimator, run_asked)
-            if run is not None:
+            names = (case, estimator, *_told(run_asked))
+            if run is not None and wants(names, results.datasets_of_run(case, estimator, run)):
                 context = f"{scenario.name}, case {case}, estimator {estimator}, run {run}"
                 result = errors.get((case, estimator))
                 if result is not None and result.diverged(scenario.common.tables.diverged)[run]:
                     context += " (its filter diverged)"
                 data = results.one_run(case, estimator, run)
-                yield Source((case, estimator, *_told(run_asked)), context, data)
+                yield Source(names, context, data)
 
 
 def simulations(
-    scenario: LoadedScenario, results: Results, run_asked: int | None = None
+    scenario: LoadedScenario,
+    results: Results,
+    run_asked: int | None = None,
+    wants: Wants = always,
 ) -> Iterator[Source]:
     """Return what was simulated of a run, of every case that has it."""
     for case in results.cases:
-        run = chosen_run(results, case, "", run_asked)
-        if run is not None:
+        run, names = chosen_run(results, case, "", run_asked), (case, *_told(run_asked))
+        if run is not None and wants(names, results.datasets_of_run(case, "", run)):
             context = f"{scenario.name}, case {case}, run {run}"
-            yield Source((case, *_told(run_asked)), context, results.one_run(case, "", run))
+            yield Source(names, context, results.one_run(case, "", run))
 
 
 def chosen_run(results: Results, case: str, estimator: str, asked: int | None = None) -> int | None:
@@ -79,7 +94,10 @@ def _told(run_asked: int | None) -> tuple[str, ...]:
 
 
 def all_runs(
-    scenario: LoadedScenario, results: Assessed, quantities: Sequence[str]
+    scenario: LoadedScenario,
+    results: Assessed,
+    quantities: Sequence[str],
+    wants: Wants = always,
 ) -> Iterator[Source]:
     """Return, for every estimator, the errors of the runs of all cases that did not diverge.
 
@@ -92,6 +110,8 @@ def all_runs(
             for (case, of), result in results.items()
             if of == estimator and set(quantities) <= set(result.errors)
         }
+        if not wants((estimator,), set(quantities)):
+            continue
         chosen = [result for case, result in mine.items() if case in averaged]
         source = _pooled(scenario, estimator, chosen or list(mine.values()), quantities)
         if source is not None:
@@ -99,7 +119,10 @@ def all_runs(
 
 
 def of_estimators(
-    scenario: LoadedScenario, results: Assessed, quantities: Sequence[str]
+    scenario: LoadedScenario,
+    results: Assessed,
+    quantities: Sequence[str],
+    wants: Wants = always,
 ) -> Iterator[Source]:
     """Return the errors of all estimators of a case that has several, by ``quantity/estimator``.
 
@@ -107,6 +130,8 @@ def of_estimators(
     """
     for case in dict.fromkeys(case for case, _ in results):
         data: Data = {}
+        if not wants((case,), set(quantities)):
+            continue
         for (of, estimator), result in results.items():
             good = result.good & ~result.diverged(scenario.common.tables.diverged)
             for name in quantities if of == case and good.any() else ():

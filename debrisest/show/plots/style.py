@@ -3,6 +3,7 @@
 import gc
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import wraps
 from typing import Any, ParamSpec
 
@@ -62,6 +63,7 @@ _SETTINGS: dict[Any, Any] = {
 }
 
 P = ParamSpec("P")
+_is_set = ContextVar("_is_set", default=False)
 
 
 def estimator_looks(estimators: Sequence[str]) -> dict[str, dict[str, Any]]:
@@ -74,11 +76,18 @@ def estimator_looks(estimators: Sequence[str]) -> dict[str, dict[str, Any]]:
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Within this context everything is drawn in the style of this file."""
+    """Within this context everything is drawn in the style of this file, set once."""
+    if _is_set.get():
+        yield
+        return
     with mpl.rc_context():
         mpl.rcdefaults()
         mpl.rcParams.update(_SETTINGS)
-        yield
+        before = _is_set.set(True)
+        try:
+            yield
+        finally:
+            _is_set.reset(before)
 
 
 @contextmanager

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from debrisest.results.assessed import SIMULATED
 from debrisest.results.overview import overview
 from debrisest.results.results import Results
+from debrisest.results.runs import SIMULATED
 from debrisest.results.status import Wanted
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.resolved import resolved

@@ -7,12 +7,11 @@ from typing import NamedTuple
 
 from debrisest.results.status import Wanted
 from debrisest.scenario.load import LoadedScenario
-from debrisest.show.plots.draw import draw, sources
-from debrisest.show.plots.gather import Source
+from debrisest.show.plots.draw import Asked, draw, sources
 from debrisest.show.plots.kinds import FIGURES, Kind
 from debrisest.show.plots.png import png
 from debrisest.show.plots.room import make_room
-from debrisest.show.plots.style import collected_after
+from debrisest.show.plots.style import collected_after, style
 
 _DPI = 90
 
@@ -32,13 +31,17 @@ def pictures(
 
     Of every case that is wanted, if that is asked for.
     """
-    seen = set()
-    for kind, source in sources(scenario, out, wanted):
-        of = (kind, *(source.names if every else _told_apart(FIGURES[kind], source)))
-        if of in seen:
+    seen: set[tuple[str, ...]] = set()
+
+    def of(kind: str, names: tuple[str, ...]) -> tuple[str, ...]:
+        return (kind, *(names if every else _told_apart(FIGURES[kind], names)))
+
+    asked = Asked(wants=lambda kind, names: of(kind, names) not in seen)
+    for kind, source in sources(scenario, out, wanted, asked):
+        if of(kind, source.names) in seen:
             continue
-        seen.add(of)
-        with collected_after():
+        seen.add(of(kind, source.names))
+        with style(), collected_after():
             figure = draw(kind, source)
             make_room(figure)
             content = png(figure, _DPI, FIGURES[kind].shaded)
@@ -47,8 +50,8 @@ def pictures(
         yield Picture(kind, source.context, address)
 
 
-def _told_apart(kind: Kind, source: Source) -> tuple[str, ...]:
+def _told_apart(kind: Kind, names: tuple[str, ...]) -> tuple[str, ...]:
     """Return what makes a figure another one than that of the first case: an estimator, a key."""
     if kind.of_simulation or kind.of_estimators:
         return ()
-    return source.names if kind.of_tables else source.names[-1:]
+    return names if kind.of_tables else names[-1:]

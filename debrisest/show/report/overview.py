@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from debrisest.results.assessed import SIMULATED
+from debrisest.results.runs import SIMULATED
 from debrisest.vocabulary import TWO_SIDED, VOCABULARY
 
 LEFT, PLOT, TOP = 92.0, 250.0, 20.0

@@ -9,10 +9,11 @@ import pandas as pd
 
 from debrisest.assessment.consistency import consistent_interval
 from debrisest.assessment.intervals import with_interval
-from debrisest.results.assessed import SIMULATED, Assessed, Result
+from debrisest.results.figured import AllRuns
+from debrisest.results.runs import SIMULATED, Runs
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.table_keys import Table, Tables
-from debrisest.show.tables.figures import dataset_of, figures, keys_of, unit_of
+from debrisest.show.tables.figures import DOUBT, dataset_of, figures, keys_of, unit_of
 from debrisest.show.tables.published import CellKey, Published, published_values
 from debrisest.show.tables.verdict import (
     Verdict,
@@ -36,12 +37,12 @@ Row: TypeAlias = dict[str, Any]
 """A cell, by COLUMNS."""
 
 
-def cells(scenario: LoadedScenario, results: Assessed) -> pd.DataFrame:
+def cells(scenario: LoadedScenario, results: AllRuns) -> pd.DataFrame:
     """Return one row per cell as ``rows_of`` does, as ``framed`` does."""
     return framed(scenario, rows_of(scenario, results))
 
 
-def rows_of(scenario: LoadedScenario, results: Assessed) -> list[Row]:
+def rows_of(scenario: LoadedScenario, results: AllRuns) -> list[Row]:
     """Return one row per cell, in the order of the layout, then case, estimator, quantity."""
     published = published_values(scenario)
     rows = (
@@ -112,7 +113,7 @@ def _row(
     estimator: str,
     table: Table,
     scenario: LoadedScenario,
-    results: Assessed,
+    results: AllRuns,
     measured: Callable[[CellKey, str], dict[str, Any] | None],
     published: Published | None,
 ) -> Row | None:
@@ -135,11 +136,11 @@ def _row(
     }
 
 
-def _is_bound(found: Result | None) -> bool:
+def _is_bound(found: Runs | None) -> bool:
     """Return whether most runs of a bound say that it is none, so that it is not shown."""
-    if found is None or not found.shows("doubt"):
+    if found is None or not found.shows(DOUBT.dataset):
         return True
-    doubt = found.figures("doubt", "mean", "end")[found.good]
+    doubt = found.figures(*DOUBT)[found.good]
     return bool(np.mean(doubt > 0.0) <= _DOUBTFUL_BOUND) if len(doubt) else True
 
 
@@ -156,7 +157,7 @@ def _said(quantity: str, found: Mapping[str, Any], published: Published | None) 
 
 
 def _measured(
-    table: Table, tables: Tables, results: Assessed, key: CellKey, estimator: str
+    table: Table, tables: Tables, results: AllRuns, key: CellKey, estimator: str
 ) -> dict[str, Any] | None:
     """Return the figure of a cell with its interval and its runs, or None if it is not there."""
     dataset = dataset_of(table, key.quantity)

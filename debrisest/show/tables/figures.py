@@ -1,15 +1,19 @@
 """The figures per run that a cell of the tables is made of."""
 
 from collections.abc import Iterable, Iterator
-from itertools import product
+from itertools import product, starmap
 
 import numpy as np
 
 from debrisest.arrays import Array, BoolArray
-from debrisest.results.assessed import SIMULATED, Result
+from debrisest.results.figured import Figure
+from debrisest.results.runs import SIMULATED, Runs
 from debrisest.scenario.table_keys import Table, Tables
 from debrisest.show.tables.published import CellKey
 from debrisest.vocabulary import VOCABULARY, table_scale
+
+DOUBT = Figure("doubt", "mean", "end")
+"""Whether a run of a bound says that it is none."""
 
 
 def keys_of(
@@ -36,8 +40,21 @@ def unit_of(table: Table, quantity: str) -> str:
     return table.units.get(quantity) or VOCABULARY[dataset_of(table, quantity)].table_unit
 
 
+def figures_of(tables: Tables, case: str) -> set[Figure]:
+    """Return all figures that the tables, and their rules of divergence, need of a case."""
+    found: set[Figure] = set()
+    for table in tables.layout:
+        names = table.cases or [case]
+        if case in (one for name in names for one in tables.means.get(name, [name])):
+            datasets = [dataset_of(table, name) for name in table.quantities]
+            found |= set(starmap(Figure, product(datasets, table.statistics, table.windows)))
+    if found:
+        found |= {Figure(rule.quantity, rule.statistic, rule.window) for rule in tables.diverged}
+    return found | {DOUBT} if any(one.dataset == DOUBT.dataset for one in found) else found
+
+
 def figures(
-    part: Result, key: CellKey, table: Table, tables: Tables
+    part: Runs, key: CellKey, table: Table, tables: Tables
 ) -> tuple[Array, BoolArray, BoolArray]:
     """Return figures per run (run,), which of them count, and which runs diverged.
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from debrisest.results.assessed import SIMULATED
+from debrisest.results.runs import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.table_keys import Table
 from debrisest.show.tables.published import CellKey, derived_values

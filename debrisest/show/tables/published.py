@@ -17,7 +17,7 @@ import pandas as pd
 from debrisest.assessment.statistics import STATISTICS
 from debrisest.errors import UserError, allowed_names, meant
 from debrisest.files import MOST_BYTES, require_ending
-from debrisest.results.assessed import SIMULATED
+from debrisest.results.runs import SIMULATED
 from debrisest.scenario.load import LoadedScenario
 from debrisest.scenario.window import window_of
 from debrisest.show.tables.verdict import CONSISTENCY, Verdict

@@ -2,17 +2,18 @@
 
 import json
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
 
 from debrisest.files import put
-from debrisest.results.assessed import assessed
+from debrisest.results.figured import figured
 from debrisest.results.open import find_results
 from debrisest.results.status import Wanted, up_to_date
 from debrisest.scenario.load import LoadedScenario
 from debrisest.show.tables.cells import COLUMNS, framed, rows_of
-from debrisest.show.tables.figures import dataset_of
+from debrisest.show.tables.figures import figures_of
 from debrisest.show.tables.kept import kept
 from debrisest.show.tables.origin import NAME, origin, replaced
 from debrisest.show.tables.render import MARK, render
@@ -23,13 +24,14 @@ def tabulate(
 ) -> tuple[pd.DataFrame, list[Wanted]]:
     """Return the cells of all results that are up to date, and the files that are not."""
     simulated, shown = _simulated(scenario), read_by_tables(scenario)
+    tables = scenario.common.tables
     files = [one for one in wanted if one.address.stage in shown]
     results = up_to_date(find_results(out / scenario.name), files, complete=True)
     stale = [one for one in files if one.reason]
     rows = kept(
         scenario,
         results,
-        lambda: rows_of(scenario, assessed(results, simulated, _quantities(scenario))),
+        lambda: rows_of(scenario, figured(results, partial(figures_of, tables), simulated)),
     )
     return framed(scenario, rows), stale
 
@@ -42,13 +44,6 @@ def read_by_tables(scenario: LoadedScenario) -> set[str]:
 def _simulated(scenario: LoadedScenario) -> set[str]:
     tables = (table for table in scenario.common.tables.layout if table.stage == "simulate")
     return {name for table in tables for name in table.quantities}
-
-
-def _quantities(scenario: LoadedScenario) -> set[str]:
-    """Return the datasets that the tables and their rules of divergence need."""
-    tables = scenario.common.tables
-    shown = {dataset_of(table, name) for table in tables.layout for name in table.quantities}
-    return shown | {rule.quantity for rule in tables.diverged}
 
 
 def chosen(rows: pd.DataFrame, asked: Callable[[str, str], bool]) -> pd.DataFrame:

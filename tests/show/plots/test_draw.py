@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -243,7 +244,7 @@ def test_estimators_without_a_good_run_or_without_errors_have_no_figure(
     scenario: LoadedScenario,
 ) -> None:
     lost = _result(np.full((2, 3), 5.0))
-    without = lost._replace(errors={"rate": lost.errors["rate"]})
+    without = replace(lost, errors={"rate": lost.errors["rate"]})
     results = {("x", "lost"): lost, ("x", "without"): without}
     assert list(all_runs(scenario, results, QUANTITIES)) == []
 

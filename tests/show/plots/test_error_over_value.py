@@ -14,6 +14,7 @@ from debrisest.scenario.load import load_scenario
 from debrisest.show.plots.along import along_curves
 from debrisest.show.plots.error_over_value import COLUMNS, error_over_value
 from debrisest.show.plots.style import ESTIMATOR_COLOURS, INK
+from debrisest.show.tables.cells import cells as cells_of
 
 VALUES = [0.001, 0.01, 0.1]
 
@@ -77,7 +78,7 @@ def test_the_cells_of_a_grid_stand_in_the_order_of_its_values(with_grid: Path) -
         (case, "wahba"): Result({"pitch": np.full((2, 61), k + 1.0)}, times, {}, 2)
         for k, case in enumerate(scenario.cases)
     }
-    sources = list(along_curves(scenario, errors))
+    sources = list(along_curves(scenario, cells_of(scenario, errors)))
     assert [source.names for source in sources] == [("noise_m",)]
     pitch = pd.DataFrame(sources[0].data).query("quantity == 'pitch'")
     assert set(pitch["value"]) == {0.01, 0.02, 0.03}
@@ -85,4 +86,4 @@ def test_the_cells_of_a_grid_stand_in_the_order_of_its_values(with_grid: Path) -
     by_value = pitch.groupby("value")["measured"].first()
     np.testing.assert_allclose(by_value / by_value.min(), [2.0, 3.0, 1.0], rtol=1e-5)
     del errors[next(iter(scenario.cases)), "wahba"]
-    assert list(along_curves(scenario, errors)) == []
+    assert list(along_curves(scenario, cells_of(scenario, errors))) == []
