@@ -1,5 +1,7 @@
 """Quaternions and the rotation matrix of one attitude, for compiled loops."""
 
+import math
+
 import numpy as np
 
 from debrisest.arrays import Array
@@ -53,3 +55,26 @@ def rows_of(q: Quaternion) -> tuple[Vector, Vector, Vector]:
 def inner(one: Vector, other: Vector) -> float:
     """Inner product of two vectors."""
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+
+
+@compiled
+def conjugated(q: Quaternion) -> Quaternion:
+    """Conjugate of a quaternion."""
+    return q[0], -q[1], -q[2], -q[3]
+
+
+@compiled
+def turned_by(turn: Vector) -> Quaternion:
+    """Unit quaternion of a rotation vector."""
+    angle = math.sqrt(inner(turn, turn))
+    half = 0.5 if angle == 0.0 else math.sin(0.5 * angle) / angle
+    return math.cos(0.5 * angle), half * turn[0], half * turn[1], half * turn[2]
+
+
+@compiled
+def turn_of(q: Quaternion) -> Vector:
+    """Shortest rotation vector of a quaternion."""
+    sine = math.sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
+    ratio = 2.0 * math.atan2(sine, abs(q[0])) / sine if sine != 0.0 else 2.0
+    ratio = -ratio if q[0] < 0.0 else ratio
+    return ratio * q[1], ratio * q[2], ratio * q[3]
