@@ -21,10 +21,12 @@ from rich.table import Table
 from debrisest import compiled
 from debrisest.arrays import Array
 from debrisest.attitude import quaternion
+from debrisest.batch.align_clouds import align_clouds
 from debrisest.batch.arc import Arc, along, course, displaced
 from debrisest.batch.descent import descend_all
+from debrisest.batch.free_points import FreePoints
 from debrisest.batch.point_sums import KnownPoints
-from debrisest.batch.tracks import tracks
+from debrisest.batch.tracks import Tracks, tracks
 from debrisest.clock import Clock
 from debrisest.control.camera import Camera
 from debrisest.control.closed_loop import ClosedLoop
@@ -86,21 +88,38 @@ def kernels() -> dict[str, Kernel]:
             f"association, 30 epochs of three detections, {runs} runs": association(runs)
             for runs in (100, 1)
         },
+        **unknown_points(),
         "pointing loop of two satellites, 40 s": pointing(),
     }
 
 
-def descents() -> Kernel:
-    """Return descents from beside the motion of eight points."""
-    draws, times = np.random.default_rng(2), np.linspace(0.0, 300.0, 150)
+def tumbling(epochs: int) -> tuple[Arc, Tracks, Array]:
+    """Return a motion, and tracks and places of eight points."""
+    draws, times = np.random.default_rng(2), np.linspace(0.0, 300.0, epochs)
     truth, model = (
         Arc(150.0, IDENTITY, RATE, log_ratios(np.diag(MOMENTS))),
         draws.normal(size=(8, 3)),
     )
     turned = model @ np.swapaxes(quaternion.to_matrix(along(truth, times)[0]), -1, -2)
-    seen = tracks(times, turned + 0.02 * draws.normal(size=turned.shape), 0.02)
+    return truth, tracks(times, turned + 0.02 * draws.normal(size=turned.shape), 0.02), model
+
+
+def unknown_points() -> dict[str, Kernel]:
+    """Return how clouds of points are laid over each other, and what these tell of an arc."""
+    truth, seen, model = tumbling(1000)
+    points, motion = FreePoints(seen, model), course(truth, seen.times)
+    return {
+        "unknown points, clouds of 1000 epochs": lambda: (align_clouds(seen).model,),
+        "unknown points, normal equations": lambda: (points.normal(motion).hold,),
+    }
+
+
+def descents() -> Kernel:
+    """Return descents from beside the motion of eight points."""
+    truth, seen, model = tumbling(150)
     evidence = KnownPoints(seen, model)
-    errors = np.repeat([1e-3, 1e-5, 0.02], [3, 3, 5]) * draws.normal(size=(4, 11))
+    errors = np.repeat([1e-3, 1e-5, 0.02], [3, 3, 5])
+    errors = errors * np.random.default_rng(3).normal(size=(4, 11))
     starts = [displaced(truth, error) for error in errors]
     return lambda: (np.stack([end.hold for end in descend_all(evidence, starts, 12)]),)
 

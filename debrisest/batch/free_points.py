@@ -83,25 +83,27 @@ class FreePoints:
 
     def normal(self, course: Course) -> Normal:
         """Return the normal equations of arcs, the points at their best, one after the other."""
+        if compiled.available():
+            return self._by_loops(course)
         if course.q.ndim > 2:
             each = [self.normal(Course(*parts)) for parts in zip(*course)]
             return Normal(*(np.stack(parts) for parts in zip(*each)))
         settled = self.settled(course.q)
-        normal, cross = settled._at_rest(course)
+        normal = settled.known.normal(course)
+        cross = settled.cross(course)
         spent = np.tensordot(
             cross, np.tensordot(self.inverse_laplacian, cross, 1), ((0, 1), (0, 1))
         )
         return normal._replace(hold=normal.hold - spent)
 
-    def _at_rest(self, course: Course) -> tuple[Normal, Array]:
-        """Return the normal equations, the points being where they are, and `cross`."""
-        if not compiled.available():
-            return self.known.normal(course), self.cross(course)
+    def _by_loops(self, course: Course) -> Normal:
         from debrisest.batch import free_points_loops
 
-        motion = (np.ascontiguousarray(part) for part in (course.q, course.turn_by))
-        chi2, pull, hold, cross = free_points_loops.normal(*self._seen, self.model, *motion)
-        return Normal(np.asarray(chi2), pull, hold), cross
+        shape = course.q.shape[:-2]
+        q, by = np.ascontiguousarray(course.q), np.ascontiguousarray(course.turn_by)
+        motion = q.reshape(-1, *q.shape[-2:]), by.reshape(-1, *by.shape[-3:])
+        told = free_points_loops.normal(*self._seen, self.inverse_laplacian, *motion)
+        return Normal(*(part.reshape(shape + part.shape[1:]) for part in told))
 
     def cross(self, course: Course) -> Array:
         """Information (feature, 3, 11) between places and unknowns of the arc."""

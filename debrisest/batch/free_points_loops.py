@@ -84,15 +84,66 @@ def told(points: Array, weight: Array, model: Array, q: Array) -> tuple[Array, A
 
 @compiled
 def normal(
-    points: Array, weight: Array, model: Array, q: Array, turn_by: Array
-) -> tuple[float, Array, Array, Array]:
-    """Return chi-square, pull (11) and information (11, 11) of an arc, the points where they are.
+    points: Array, weight: Array, inverse: Array, q: Array, turn_by: Array
+) -> tuple[Array, Array, Array]:
+    """Return chi-squares (arc,), pulls (arc, 11), information (arc, 11, 11), points at their best.
 
-    ``turn_by (time, 3, 11)`` are derivatives of the attitudes; the last that is returned is the
-    information (feature, 3, 11) between places and unknowns.
+    ``inverse (feature, feature)`` is the inverse Laplacian, ``q (arc, time, 4)``, ``turn_by (arc,
+    time, 3, 11)`` are derivatives of the attitudes.
     """
-    chi2, pulls, holds = 0.0, np.zeros(11), np.zeros((11, 11))
-    cross, turned = np.zeros((len(model), 3, 11)), np.empty((3, 11))
+    arcs, features = len(q), points.shape[1]
+    chi2, pulls, holds = np.empty(arcs), np.zeros((arcs, 11)), np.zeros((arcs, 11, 11))
+    cross, moved = np.empty((features, 3, 11)), np.empty((3, 11))
+    for k in range(arcs):
+        model = best_places(inverse, pulled(points, weight, q[k]))
+        chi2[k] = _at_rest(points, weight, model, q[k], turn_by[k], pulls[k], holds[k], cross)
+        for n in range(features):
+            _spend(inverse[n], cross, cross[n], holds[k], moved)
+    return chi2, pulls, holds
+
+
+@compiled
+def _spend(inverse: Array, cross: Array, own: Array, hold: Array, moved: Array) -> None:
+    """Take from the information (11, 11) what the place of a point takes; ``moved`` is scratch."""
+    moved[:] = 0.0
+    for n in range(len(inverse)):
+        for i in range(3):
+            for a in range(11):
+                moved[i, a] += inverse[n] * cross[n, i, a]
+    for i in range(3):
+        for a in range(11):
+            for b in range(11):
+                hold[a, b] -= own[i, a] * moved[i, b]
+
+
+@compiled
+def best_places(inverse: Array, pull: Array) -> Array:
+    """Return the places (feature, 3) that fit best."""
+    model = np.zeros(pull.shape)
+    for m in range(len(pull)):
+        for n in range(len(pull)):
+            for i in range(3):
+                model[m, i] += inverse[m, n] * pull[n, i]
+    return model
+
+
+@compiled
+def _at_rest(
+    points: Array,
+    weight: Array,
+    model: Array,
+    q: Array,
+    turn_by: Array,
+    pulls: Array,
+    holds: Array,
+    cross: Array,
+) -> float:
+    """Add up pull and information of an arc, the points where they are; return the chi-square.
+
+    ``cross`` is the information (feature, 3, 11) between places and unknowns.
+    """
+    chi2, turned = 0.0, np.empty((3, 11))
+    cross[:] = 0.0
     measured, body = np.empty(model.shape), np.empty(model.shape)
     pull, hold = np.empty(3), np.empty((3, 3))
     for t in range(len(points)):
@@ -115,7 +166,7 @@ def normal(
                 cross[n, 0, a] += w * (z * turned[1, a] - y * turned[2, a])
                 cross[n, 1, a] += w * (x * turned[2, a] - z * turned[0, a])
                 cross[n, 2, a] += w * (y * turned[0, a] - x * turned[1, a])
-    return chi2, pulls, holds, cross
+    return chi2
 
 
 @compiled
