@@ -134,13 +134,11 @@ def sigma_points() -> Kernel:
     state[:, redundant_model.INERTIA] = [135.0, 208.0, 260.0, 5.0, -3.0, 8.0]
     state[:, known.camera_points][:, 2::3] += 20.0
     covariance = np.tile(1e-4 * np.eye(91), (20, 1, 1))
-    with patch.object(compiled, "available", lambda: True):
-        fast = redundant_model.redundant_model(known, 1.0, 0.01)
-    shown = fast.measurement(state, 0)
+    shown = redundant_model.measurement(known, state)
     measured = shown[:, None] + draws.normal(size=(20, 2, 25)) * [*24 * [1.0], 0.01]
 
     def kernel() -> tuple[Array]:
-        model = fast if compiled.available() else fast._replace(paired=None)
+        model = redundant_model.redundant_model(known, 1.0, 0.01)
         return (unscented(model, state, covariance, measured).state,)
 
     return kernel

@@ -17,7 +17,7 @@ def subtract(state: Array, reference: Array) -> Array:
 
 
 class PairedSteps(NamedTuple):
-    """Functions of a model on pairs of points ``x +- scale l``, compiled, for an unscented filter.
+    """Functions of a model on pairs of points ``x +- scale l``, for an unscented filter.
 
     Columns l of a covariance's root are rows of an array here, ``(run, n, n)``, triangular.
     """

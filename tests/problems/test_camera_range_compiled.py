@@ -74,11 +74,12 @@ def _problem(points: int = 4) -> tuple[redundant_model.CameraGeometry, Array, Ar
     return known, state, root
 
 
+@pytest.mark.parametrize("fast", [True, False])
 def test_pairs_of_the_redundant_model_are_halves_of_its_points(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, fast: bool
 ) -> None:
     known, state, root = _problem()
-    monkeypatch.setattr(compiled, "available", lambda: True)
+    monkeypatch.setattr(compiled, "available", lambda: fast)
     model = redundant_model.redundant_model(known, 1.0, 0.01)
     assert model.paired is not None
     columns = np.ascontiguousarray(np.swapaxes(root, -2, -1))
@@ -91,20 +92,24 @@ def test_pairs_of_the_redundant_model_are_halves_of_its_points(
         return at[:, 0], 0.5 * (up - down) / scale, (0.5 * (up + down) - at) / scale
 
     wanted = halves(model.measurement(points, 0))
-    for fast, slow in zip(model.paired.show(state, columns, scale), wanted):
-        np.testing.assert_allclose(fast, slow, atol=1e-12 * np.abs(wanted[0]).max())
+    for found, half in zip(model.paired.show(state, columns, scale), wanted):
+        np.testing.assert_allclose(found, half, atol=1e-12 * np.abs(wanted[0]).max())
     at, odd, even = halves(model.process(points, 0))
     loose = model.paired.move(state, columns, scale)
-    for fast, slow in (
+    for found, half in (
         *((state, at), (loose[:, :core], odd[:, :core]), (columns[:, core:], odd[:, core:])),
         *((loose[:, core:], even[:, :core]), (np.zeros_like(even[:, core:]), even[:, core:])),
     ):
-        np.testing.assert_allclose(fast, slow, atol=1e-12 * np.abs(at).max())
+        np.testing.assert_allclose(found, half, atol=1e-12 * np.abs(at).max())
 
 
+@pytest.mark.parametrize("loops", [True, False])
 @pytest.mark.parametrize("noise", [0.0, 1e-8])
-def test_the_filter_by_a_root_is_the_filter_by_sigma_points(noise: float) -> None:
+def test_the_filter_by_a_root_is_the_filter_by_sigma_points(
+    monkeypatch: pytest.MonkeyPatch, noise: float, loops: bool
+) -> None:
     """Some is not observed, one run has no start, and one is lost on the way."""
+    monkeypatch.setattr(compiled, "available", lambda: loops)
     known, truth, root = _problem()
     size = len(root[0])
     variance = noise * np.arange(size)

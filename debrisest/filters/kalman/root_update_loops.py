@@ -36,8 +36,12 @@ def correct(
     updated = np.empty((_BLOCK, n))
     for run in range(runs):
         _leave_out(innovation[run], odd[run], noise[run])
-        total[:], gain[:], turned[:] = noise[run], 0.0, odd[run].T
         made, along = columns[run], odd[run]
+        for q in range(m):
+            for p in range(m):
+                total[q, p] = noise[run, q, p]
+            for j in range(n):
+                gain[q, j], turned[q, j] = 0.0, along[j, q]
         for end in range(n, 0, -_BLOCK):
             first = max(end - _BLOCK, 0)
             cholesky(total, *factors)
@@ -62,7 +66,10 @@ def correct(
 def _leave_out(innovation: Array, odd: Array, noise: Array) -> None:
     for q in range(len(innovation)):
         if np.isnan(innovation[q]):
-            odd[:, q], noise[q], noise[:, q] = 0.0, 0.0, 0.0
+            for j in range(len(odd)):
+                odd[j, q] = 0.0
+            for p in range(len(noise)):
+                noise[q, p] = noise[p, q] = 0.0
             innovation[q], noise[q, q] = 0.0, 1.0
 
 
@@ -79,11 +86,10 @@ def _solve_block(
     upper, lower = factors
     half, turned = halves
     m = len(upper)
-    half[:] = 0.0
     for q in range(m):
-        for c in range(end - first):
-            half[q, c] = along[first + c, q]
-        _add_blocks(half, q, half, lower, q, 0, q, -1.0)
+        for c in range(_BLOCK):
+            half[q, c] = along[first + c, q] if first + c < end else 0.0
+        add_products(half, q, half, lower, q, 0, q, 0, -1.0)
         scale = 1.0 / upper[q, q]
         for c in range(_BLOCK):
             half[q, c] *= scale
@@ -92,14 +98,14 @@ def _solve_block(
     for k in range(_BLOCK - 1, -1, -1):
         for c in range(_BLOCK):
             root[k, c] = 1.0 if c == k else 0.0
-        _add_blocks(root, k, half, turned, k, 0, m, 1.0)
-        _add_blocks(root, k, root, across, k, k + 1, _BLOCK, -1.0)
+        add_products(root, k, half, turned, k, 0, m, 0, 1.0)
+        add_products(root, k, root, across, k, k + 1, _BLOCK, 0, -1.0)
         scale = 1.0 / np.sqrt(root[k, k])
         for c in range(_BLOCK):
             root[k, c] *= scale
             across[c, k] = root[k, c]
     for q in range(m - 1, -1, -1):
-        _add_blocks(half, q, half, upper, q, q + 1, m, -1.0)
+        add_products(half, q, half, upper, q, q + 1, m, 0, -1.0)
         scale = 1.0 / upper[q, q]
         for c in range(_BLOCK):
             half[q, c] *= scale
@@ -137,21 +143,3 @@ def _solve(factors: tuple[Array, Array], right: Array, run: int) -> float:
             right[run, q] -= upper[q, p] * right[run, p]
         right[run, q] /= upper[q, q]
     return square
-
-
-@compiled
-def _add_blocks(
-    to: Array, at: int, rows: Array, weights: Array, of: int, first: int, end: int, sign: float
-) -> None:
-    """Do the same where rows are as long as a block."""
-    for c in range(first, end - 3, 4):
-        s, t = sign * weights[of, c], sign * weights[of, c + 1]
-        u, v = sign * weights[of, c + 2], sign * weights[of, c + 3]
-        for r in range(_BLOCK):
-            to[at, r] += (s * rows[c, r] + t * rows[c + 1, r]) + (
-                u * rows[c + 2, r] + v * rows[c + 3, r]
-            )
-    for c in range(end - (end - first) % 4, end):
-        s = sign * weights[of, c]
-        for r in range(_BLOCK):
-            to[at, r] += s * rows[c, r]

@@ -68,8 +68,8 @@ def unscented(
       symmetric, and positive when the weights are.
 
     Points are drawn by addition unless the model has its own `difference`, in which case its
-    `retract` draws them; the corrected state is always `retract(x, K nu)`. A model's compiled
-    steps of pairs do the same by `unscented_root`.
+    `retract` draws them; the corrected state is always `retract(x, K nu)`. Where a
+    model has steps for pairs of points, `unscented_root` does the same.
     """
     rule = _rule(model, covariance.shape[-1], spread)
     pairs = PairRule(rule.scale, spread.beta - spread.alpha**2)

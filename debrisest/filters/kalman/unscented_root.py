@@ -1,13 +1,13 @@
-"""Unscented Kalman filter by a triangular root of the covariance, as compiled loops."""
+"""Unscented Kalman filter by a triangular root of the covariance."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from debrisest.arrays import Array
+from debrisest.arrays import Array, IntArray
 from debrisest.filters.estimates import Estimates, EstimatesWriter
-from debrisest.filters.linear_algebra import square_root
+from debrisest.filters.kalman.root import columns_of, correct, fold, gram
 from debrisest.filters.model import Model, PairedSteps
 
 
@@ -45,26 +45,24 @@ def unscented_root(
 
     Pairs of points at a distance of ``scale`` columns of the root move and are seen as half
     differences, whose squares are a covariance, and half sums, whose squares are what bends.
-    Neither the covariance nor that of the innovation is formed, so that none has to be repaired.
     """
     epochs = measurements.shape[1]
     writer = EstimatesWriter(model.error_names, state, covariance, epochs, keep, totals=["repairs"])
-    going = writer.runs
-    state, (root, repaired) = state[going], square_root(covariance[going])
-    columns, repairs = np.ascontiguousarray(np.swapaxes(root, -2, -1)), repaired.astype(np.int64)
-    noise = _root_of_noise(model.process_noise)
+    going, noise = writer.runs, _root_of_noise(model.process_noise)
     with np.errstate(all="ignore"):
+        state, (columns, repairs) = state[going], columns_of(covariance[going])
         for k in range(epochs):
             if k > 0:
-                state = _predict(steps, rule, state, columns, noise)
+                state, repaired = _predict(steps, rule, state, columns, noise)
+                repairs += repaired
             y = measurements[going, k]
-            state, variance, nis = _update(model, steps, rule, state, columns, y)
-            spread = np.swapaxes(columns, -2, -1) @ columns if writer.keeps(k) else variance
+            state, variance, nis, repaired = _update(model, steps, rule, state, columns, y)
+            spread = gram(columns) if writer.keeps(k) else variance
             figures = {"nis": nis, "nis_dof": (~np.isnan(y)).sum(-1), "repairs": repairs}
             left = writer.record(k, state, spread, figures)
+            repairs = repaired[left]
             if len(left) < len(going):
                 going, state, columns = going[left], state[left], columns[left]
-            repairs = np.zeros(len(going), dtype=np.int64)
     return writer.estimates()
 
 
@@ -76,10 +74,8 @@ def _root_of_noise(noise: Array) -> Array:
 
 def _predict(
     steps: PairedSteps, rule: PairRule, state: Array, columns: Array, noise: Array
-) -> Array:
-    """Return the mean one step later, and replace the columns by its own."""
-    from debrisest.filters.kalman.root_prediction_loops import fold
-
+) -> tuple[Array, IntArray]:
+    """Return the mean one step later and repairs (run,), and replace the columns by its own."""
     loose = steps.move(state, columns, rule.scale)
     own = loose.shape[1] // 2
     even = loose[:, own:]
@@ -87,19 +83,16 @@ def _predict(
     loose[:, own:] = rule.leaned(even)
     if len(noise):
         loose = np.concatenate([loose, np.tile(noise, (len(loose), 1, 1))], axis=1)
-    fold(columns, loose, own)
-    return state
+    return state, fold(columns, loose, own)
 
 
 def _update(
     model: Model, steps: PairedSteps, rule: PairRule, state: Array, columns: Array, y: Array
-) -> tuple[Array, Array, Array]:
-    """Return the corrected state, its variances and NIS, and update the columns."""
-    from debrisest.filters.kalman.root_update_loops import correct
-
+) -> tuple[Array, Array, Array, IntArray]:
+    """Return the corrected state, its variances, NIS and repairs, and update the columns."""
     shown, odd, even = steps.show(state, columns, rule.scale)
     innovation = model.innovation(y, shown + even.sum(1) / rule.scale)
     even = rule.leaned(even)
-    noise = model.measurement_noise + np.swapaxes(even, -2, -1) @ even
-    correction, variance, nis = correct(columns, odd, noise, innovation)
-    return model.retract(state, correction), variance, nis
+    noise = model.measurement_noise + gram(even)
+    correction, variance, nis, repaired = correct(columns, odd, noise, innovation)
+    return model.retract(state, correction), variance, nis, repaired

@@ -11,6 +11,7 @@ for the relative orbit, and one Runge-Kutta step of Eq 18d for the attitude rela
 frame.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -71,7 +72,7 @@ def redundant_model(
         measurement_noise=np.diag(noise),
         error_names=error_names(known.points),
         retract=_correct,
-        paired=_paired(known) if compiled.available() else None,
+        paired=_paired(known),
     )
 
 
@@ -108,6 +109,8 @@ def process(known: CameraGeometry, state: Array) -> Array:
 
 
 def _paired(known: CameraGeometry) -> PairedSteps:
+    if not compiled.available():
+        return PairedSteps(move=partial(_move_pairs, known), show=partial(_show_pairs, known))
     from debrisest.problems.camera_range.redundant_loops import moved_pairs, shown_pairs
 
     orbit = transition(known.mean_motion, known.step)
@@ -118,18 +121,50 @@ def _paired(known: CameraGeometry) -> PairedSteps:
     )
 
 
+def _move_pairs(known: CameraGeometry, state: Array, columns: Array, scale: float) -> Array:
+    """Pairs that move the core are moved as they are; the other columns turn with the state."""
+    error = scale * columns[:, :CORE]
+    points = np.concatenate([state[:, None], state[:, None] + error, state[:, None] - error], 1)
+    moved = process(known, points)
+    before = state[:, None, Q] / _length(state[:, None, Q])
+    turned = _turned(known, columns[:, CORE:], before, moved[:, :1, Q])
+    columns[:, CORE:, known.camera_points] += turned
+    state[:] = moved[:, 0]
+    return np.concatenate(_halves(moved, scale), axis=1)
+
+
+def _show_pairs(
+    known: CameraGeometry, state: Array, columns: Array, scale: float
+) -> tuple[Array, Array, Array]:
+    error = scale * columns
+    points = np.concatenate([state[:, None], state[:, None] + error, state[:, None] - error], 1)
+    shown = measurement(known, points)
+    return shown[:, 0], *_halves(shown, scale)
+
+
+def _halves(values: Array, scale: float) -> tuple[Array, Array]:
+    """Half the differences of pairs, and half their sums without the first one, by the scale."""
+    up, down = np.split(values[:, 1:], 2, axis=1)
+    return 0.5 / scale * (up - down), (0.5 * (up + down) - values[:, :1]) / scale
+
+
 def _moved(known: CameraGeometry, leader: Array, state: Array) -> Array:
     """States ``(..., copy, n)`` moved with the core of their ``leader (..., 1, n)``."""
     core, before, after = _core_step(known, leader)
     result = state.copy()
     result[..., :CORE] = core
+    receding = _length(core[..., POSITION]) - _length(leader[..., POSITION])
+    seen = _turned(known, state, before, after)
+    seen[..., 2::3] += receding
+    result[..., known.camera_points] += seen
+    return result
+
+
+def _turned(known: CameraGeometry, state: Array, before: Array, after: Array) -> Array:
+    """How points ``(..., copy, 3N)`` of the body change place as attitudes (..., 1, 4) do."""
     body = state[..., known.body_points].reshape(*state.shape[:-2], -1, 3)
     turned = body @ np.swapaxes(_matrix(after) - _matrix(before), -1, -2)[..., 0, :, :]
-    receding = _length(core[..., POSITION]) - _length(leader[..., POSITION])
-    seen = turned.reshape(*state.shape[:-1], known.points, 3)
-    seen[..., 2] += receding
-    result[..., known.camera_points] += seen.reshape(*state.shape[:-1], -1)
-    return result
+    return turned.reshape(*state.shape[:-1], -1)
 
 
 def _core_step(known: CameraGeometry, leader: Array) -> tuple[Array, Array, Array]:

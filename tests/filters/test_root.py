@@ -1,12 +1,18 @@
-"""A triangular root of a covariance in compiled loops, against the covariance itself."""
+"""A triangular root of a covariance, with and without loops, against the covariance itself."""
 
 import numpy as np
 import pytest
 
+from debrisest import compiled
 from debrisest.arrays import Array
+from debrisest.filters.kalman.root import correct, fold
 
-pytest.importorskip("numba")
-loops = pytest.importorskip("debrisest.filters.kalman.root_update_loops")
+
+@pytest.fixture(params=[True, False], autouse=True)
+def loops(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    if request.param:
+        pytest.importorskip("numba")
+    monkeypatch.setattr(compiled, "available", lambda: request.param)
 
 
 def _columns(draws: np.random.Generator, runs: int, n: int) -> Array:
@@ -21,13 +27,11 @@ def _squares(columns: Array) -> Array:
 @pytest.mark.parametrize("own", [0, 7, 20])
 @pytest.mark.parametrize("count", [20, 33])
 def test_folded_columns_have_the_squares_of_all(own: int, count: int) -> None:
-    from debrisest.filters.kalman.root_prediction_loops import fold
-
     draws = np.random.default_rng(own)
     columns, loose = _columns(draws, 3, 20), draws.normal(size=(3, count, 20))
     loose[1, own:] = 0.0
     wanted = _squares(columns[:, own:]) + _squares(loose)
-    fold(columns, loose, own)
+    assert not fold(columns, loose, own).any()
     np.testing.assert_allclose(_squares(columns), wanted, atol=1e-12 * wanted.max())
     assert not np.tril(columns, -1).any()
 
@@ -45,7 +49,8 @@ def test_a_corrected_root_is_that_of_the_kalman_filter(n: int, m: int) -> None:
     innovation[2, 0] = np.nan
     covariance = _squares(columns)
     odd = np.ascontiguousarray(columns @ np.swapaxes(response, -2, -1))
-    correction, variance, nis = loops.correct(columns, odd, noise.copy(), innovation.copy())
+    correction, variance, nis, repairs = correct(columns, odd, noise.copy(), innovation.copy())
+    assert not repairs.any()
     assert not np.tril(columns, -1).any()
     for run in range(3):
         seen = ~np.isnan(innovation[run])
