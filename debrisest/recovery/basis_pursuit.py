@@ -121,5 +121,5 @@ def _solved(lasso: Lasso, v: ComplexArray, effort: Effort) -> tuple[IntArray, In
 def _objective(lasso: Lasso, v: ComplexArray, signal: Array) -> Array:
     """Eq. 19 (row)."""
     misfit = (lasso.samples - signal) * lasso.weight
-    squares: Array = 0.5 * np.sum(misfit**2, axis=(-2, -1))
-    return squares + lasso.penalty * l1_norm(v, lasso.length, joint=True)
+    squares = np.asarray(np.sum(misfit**2, axis=(-2, -1), dtype=np.float64))
+    return 0.5 * squares + lasso.penalty * l1_norm(v, lasso.length, joint=True)

@@ -62,13 +62,11 @@ def solve(lasso: Lasso, v: ComplexArray, effort: Effort) -> tuple[IntArray, Bool
 
 
 def _solve(lasso: Lasso, v: ComplexArray, done: IntArray, effort: Effort) -> BoolArray:
-    """In single precision as far as its digits go; where nothing but the limit ends, in double."""
-    u, single = v.copy(), lasso.in_precision(np.float32)
-    coarse = effort._replace(tolerance=max(effort.tolerance, _SINGLE_TOLERANCE))
-    if lasso.samples.dtype == np.float32:
-        return _advance(lasso, u, v, done, effort)
-    if effort.tolerance > 0:
-        met = _advance(single, u, v, done, coarse)
+    """In single precision first, as far as its digits go, where a tolerance in double is sought."""
+    u = v.copy()
+    if lasso.samples.dtype == np.float64 and effort.tolerance > 0:
+        coarse = effort._replace(tolerance=max(effort.tolerance, _SINGLE_TOLERANCE))
+        met = _advance(lasso.in_precision(np.float32), u, v, done, coarse)
         if effort.tolerance >= _SINGLE_TOLERANCE:
             return met
     return _advance(lasso, u, v, done, effort)

@@ -6,7 +6,8 @@ are kept, then the pieces are added one at a time, each with both signs. Where t
 a piece is clear about its sign, the other one is not tried (the paper tries all).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from functools import partial
 from itertools import product
 from math import ceil
 from typing import NamedTuple
@@ -15,8 +16,9 @@ import numpy as np
 import scipy
 
 from debrisest.arrays import Array, BoolArray, ComplexArray, IntArray
-from debrisest.recovery.basis_pursuit import basis_pursuit
+from debrisest.recovery.basis_pursuit import Recovered, basis_pursuit
 from debrisest.recovery.fourier import analyse, synthesise
+from debrisest.recovery.in_step import Question, Search, in_step
 from debrisest.recovery.score import Score, lasso_score
 
 Watch = Callable[[IntArray, Array, Array, Array], None]
@@ -37,8 +39,6 @@ class _Search(NamedTuple):
     watch: Watch | None
     ratio: float
     penalty: float
-    splitting: float
-    relaxation: float
     beam: int
 
 
@@ -52,6 +52,9 @@ class _Beam(NamedTuple):
     score: Array
     """Their penalties (run, hypothesis), infinite where there is no hypothesis."""
     length: int
+
+
+_Step = Generator[Question, Recovered, _Beam]
 
 
 def search_signs(
@@ -86,40 +89,58 @@ def search_signs(
     runs = samples.reshape(-1, samples.shape[-1])
     masks, group = np.unique(piece.reshape(runs.shape), axis=0, return_inverse=True)
     sign = np.full((len(runs), int(piece.max(initial=-1)) + 1), np.nan)
-    for index, mask in enumerate(masks):
-        same = np.flatnonzero(group.reshape(-1) == index)
-        keys = (ratio, penalty, splitting, relaxation, beam)
-        search = _Search(same, runs[same], mask, score, watch, *keys)
-        found = _search(search, first, first_iterations, iterations)
-        sign[same, : found.shape[-1]] = found
+    same = [np.flatnonzero(group.reshape(-1) == index) for index in range(len(masks))]
+    searches = [
+        _Search(of, runs[of], mask, score, watch, ratio, penalty, beam)
+        for of, mask in zip(same, masks)
+        if mask.max(initial=-1) >= 0
+    ]
+    recover = partial(_recover, penalty=penalty, splitting=splitting, relaxation=relaxation)
+    steps = [_search(search, first, first_iterations, iterations) for search in searches]
+    for search, found in zip(searches, in_step(steps, recover)):
+        sign[search.runs, : found.shape[-1]] = found
     return sign.reshape(*samples.shape[:-1], sign.shape[-1])
 
 
-def _search(search: _Search, first: int, first_iterations: int, iterations: int) -> Array:
+def _recover(question: Question, penalty: float, splitting: float, relaxation: float) -> Recovered:
+    """What is asked, in single precision: it is only compared."""
+    return basis_pursuit(
+        question.samples,
+        question.observed,
+        question.length,
+        penalty,
+        splitting,
+        question.iterations,
+        relaxation=relaxation,
+        tolerance=0.0,
+        single=True,
+        start=question.start,
+    )
+
+
+def _search(search: _Search, first: int, first_iterations: int, iterations: int) -> Search:
     """Signs (run, piece) of the best hypothesis at the end."""
-    count = int(search.piece.max(initial=-1)) + 1
-    if count == 0:
-        return np.empty((len(search.samples), 0))
-    beam = _exhaust(search, min(first, count), first_iterations)
+    count = int(search.piece.max()) + 1
+    beam = yield from _exhaust(search, min(first, count), first_iterations)
     for _ in range(min(first, count), count):
-        beam = _extend(search, beam, iterations)
+        beam = yield from _extend(search, beam, iterations)
     return beam.sign[:, 0]
 
 
-def _exhaust(search: _Search, count: int, iterations: int) -> _Beam:
+def _exhaust(search: _Search, count: int, iterations: int) -> _Step:
     """The best hypotheses on the first `count` pieces, out of all: 2^(count - 1)."""
     signs = np.array([(1.0, *rest) for rest in product((1.0, -1.0), repeat=count - 1)])
-    return _best(search, np.tile(signs, (len(search.samples), 1, 1)), iterations, None)
+    return (yield from _best(search, np.tile(signs, (len(search.samples), 1, 1)), iterations, None))
 
 
-def _extend(search: _Search, beam: _Beam, iterations: int) -> _Beam:
+def _extend(search: _Search, beam: _Beam, iterations: int) -> _Step:
     """The best hypotheses after one more piece, added to each with both signs."""
     plus = np.ones_like(beam.sign[..., :1])
     children = [np.concatenate([beam.sign, newest], axis=-1) for newest in (plus, -plus)]
-    return _best(search, np.concatenate(children, axis=1), iterations, beam)
+    return (yield from _best(search, np.concatenate(children, axis=1), iterations, beam))
 
 
-def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) -> _Beam:
+def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) -> _Step:
     """The hypotheses `sign` (run, hypothesis, piece) with the lowest scores."""
     window = int(np.flatnonzero(search.piece == sign.shape[-1] - 1)[-1]) + 1
     piece = search.piece[:window]
@@ -131,18 +152,7 @@ def _best(search: _Search, sign: Array, iterations: int, parents: _Beam | None) 
         tried = _plausible(search, samples, piece, known)
         run, hypothesis = np.nonzero(tried)
         start = known.coefficients[run, hypothesis % known.score.shape[1]]
-    recovered = basis_pursuit(
-        samples[tried],
-        piece >= 0,
-        length,
-        search.penalty,
-        search.splitting,
-        iterations,
-        relaxation=search.relaxation,
-        tolerance=0.0,
-        single=True,
-        start=start,
-    )
+    recovered = yield Question(samples[tried], piece >= 0, length, iterations, start)
     score = np.full(tried.shape, np.inf)
     score[tried] = search.score(recovered)
     if search.watch is not None:
