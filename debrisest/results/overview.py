@@ -61,5 +61,6 @@ def _row(results: Results, wanted: Sequence[Wanted]) -> Row:
 def _endings(results: Results, case: str, estimator: str) -> Iterator[str]:
     """Yield how each stage of each run ended, where it says so."""
     for stage in results.stages(case, estimator):
-        told = results.load(case, estimator, stage, names=("run", "status"))
-        yield from (f"{stage}: {status}" for status in told.get("status", ()) if status)
+        if "status" in results.datasets(case, estimator, stage):
+            told = results.load(case, estimator, stage, names=("run", "status"))
+            yield from (f"{stage}: {status}" for status in told.get("status", ()) if status)

@@ -71,6 +71,16 @@ def test_a_filter_gives_each_run_the_same_bytes(scenario: str, estimator: str) -
             assert same(value, apart[name]), name
 
 
+@pytest.mark.parametrize("scenario", CASES)
+def test_a_simulation_gives_each_run_the_same_bytes(scenario: str) -> None:
+    """However many runs a file has: more runs, or another cut, change no number."""
+    for runs in (slice(0, 2), slice(2, RUNS)):
+        numbers = {"run": np.arange(float(RUNS))[runs]}
+        apart = STAGES["simulate"].run(case_of(scenario), "", numbers)
+        for name, value in share(simulated(scenario), runs).items():
+            assert same(value, apart[name]), name
+
+
 def test_chunks_computed_together_have_the_files_of_chunks_computed_alone(tmp_path: Path) -> None:
     def steps(folder: str) -> dict[str, list[Step]]:
         found: dict[str, list[Step]] = {}
