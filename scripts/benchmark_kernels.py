@@ -33,6 +33,7 @@ from debrisest.filters.association.restless import Bank
 from debrisest.filters.association.sensor import updated
 from debrisest.filters.association.update import Scan, Tracks
 from debrisest.filters.association.weights import Validation, probabilistic
+from debrisest.filters.replay.frame_update import Belief, covariance_of, predict, update
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
@@ -125,7 +126,14 @@ def of_replay() -> dict[str, Kernel]:
     arc = measured_arc(fast, *data)
 
     def model() -> ReplayModel:
-        return fast if compiled.available() else fast._replace(sums=None)
+        return fast if compiled.available() else fast._replace(sums=None, frames=None)
+
+    known_so_far = linearize(fast, arc, guess, 50)
+    belief = Belief(known_so_far.last_state, known_so_far.information)
+
+    def frame() -> tuple[Array, ...]:
+        updated = update(model(), predict(model(), belief, 51), arc, 51, gate=False)[0]
+        return *updated, covariance_of(model(), updated)
 
     return {
         "stereo pose, motion and sensitivities of 100 runs, 101 epochs": lambda: fast.trajectory(
@@ -136,6 +144,7 @@ def of_replay() -> dict[str, Kernel]:
         "stereo pose, linearised cost of 100 runs, 101 epochs": lambda: (
             linearize(model(), arc, guess, epochs - 1).information
         ),
+        "a frame of the filter: prediction, update and covariance, 100 runs": frame,
         "replay, 100 runs of 101 epochs": lambda: replay(model(), *data).state,
         "the same, one run": lambda: replay(model(), *(each[:1] for each in data)).state,
     }
