@@ -98,7 +98,7 @@ def _frames(known: StereoGeometry, sigma: Array, centre: Array, back: Array) -> 
         plain: bool,
     ) -> Array:
         returned = centre[first] @ back[last]
-        return carried(before, after, information, turning.copy(), returned, plain)
+        return carried(before, after.copy(), information, turning.copy(), returned, plain)
 
     def update(
         state: Array,
