@@ -37,11 +37,13 @@ from debrisest.dynamics import kepler
 from debrisest.dynamics.integrators import rk4_step
 from debrisest.dynamics.log_inertia import log_ratios
 from debrisest.filters.association.single import associated
+from debrisest.filters.association.update import Tracks
 from debrisest.filters.association.weights import Validation
 from debrisest.filters.bound.information import Information, gather
 from debrisest.filters.kalman.extended import extended
 from debrisest.filters.kalman.unscented import unscented
 from debrisest.filters.model import Model
+from debrisest.filters.replay.frame_update import Belief, covariance_of, predict, update
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
@@ -208,7 +210,14 @@ def of_replay() -> dict[str, Kernel]:
     arc = measured_arc(fast, *data)
 
     def model() -> ReplayModel:
-        return fast if compiled.available() else fast._replace(sums=None)
+        return fast if compiled.available() else fast._replace(sums=None, frames=None)
+
+    known_so_far = linearize(fast, arc, guess, 50)
+    belief = Belief(known_so_far.last_state, known_so_far.information)
+
+    def frame() -> tuple[Array, ...]:
+        updated = update(model(), predict(model(), belief, 51), arc, 51, gate=False)[0]
+        return *updated, covariance_of(model(), updated)
 
     return {
         "stereo pose, motion and sensitivities of 100 runs, 101 epochs": lambda: fast.trajectory(
@@ -219,6 +228,7 @@ def of_replay() -> dict[str, Kernel]:
         "stereo pose, linearised cost of 100 runs, 101 epochs": lambda: (
             linearize(model(), arc, guess, epochs - 1).information
         ),
+        "a frame of the filter: prediction, update and covariance, 100 runs": frame,
         "replay, 100 runs of 101 epochs": lambda: replay(model(), *data).state,
         "the same, one run": lambda: replay(model(), *(each[:1] for each in data)).state,
     }

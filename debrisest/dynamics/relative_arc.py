@@ -29,7 +29,7 @@ def rotation(
         return exact_rotation(times - times[0], q_lt, rate_l, k, leader)
     from debrisest.dynamics.relative_arc_loops import motion_seen
 
-    start = q_lt, _in_body(q_lt, rate_l, leader)
+    start = q_lt.copy(), _in_body(q_lt, rate_l, leader)
     return motion_seen(times, start, inertia_ratios.moments(k), _seen_turning(leader))
 
 
@@ -58,7 +58,7 @@ def rotation_arc(
         by_ratios = inertia_ratios.acceleration_by_ratios(np.ones((len(k), 3)), k)
         body = inertia_ratios.moments(k), inertia_ratios.slopes(k), by_ratios
         parts = parts_of_steps(times, rate_b)
-        return relative(times, (q_lt, rate_b), body, parts, by_start[:, 0], orbit)
+        return relative(times, (q_lt.copy(), rate_b), body, parts, by_start[:, 0].copy(), orbit)
     arc = torque_free_arc(times, q_lt, rate_b, k)
     zero = np.zeros_like(half)
     q_li = np.stack([np.cos(half), zero, zero, -np.sin(half)], axis=-1)

@@ -51,9 +51,9 @@ class PointRows(NamedTuple):
 class Frames(NamedTuple):
     """The filter between the anchors, of a model that has it for less; runs first, as there."""
 
-    carry: Callable[[Array, Array, Array, Array, int, int], Array]
-    """(states before and after, information in the chart of those before, sensitivities of those
-    after, first epoch, last) -> information in the chart of those after."""
+    carry: Callable[[Array, Array, Array, Array, int, int, bool], Array]
+    """(states before and after, information before, sensitivities of those after, first epoch,
+    last, whether it is plain or in the charts of those before) -> that in those after."""
     update: Callable[[Array, Array, int, Array, Array, bool, tuple[int, float]], Array]
     """(states, information, epoch, normalised measurements (run, m), weights, whether with a gate,
     most iterations and when they end) -> NIS (run,); the others are updated in place."""

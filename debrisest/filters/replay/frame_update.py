@@ -35,7 +35,7 @@ def predict(model: ReplayModel, belief: Belief, k: int) -> Belief:
     state = states[:, -1]
     if model.frames is not None:
         moved = belief.state, state, belief.information, sensitivity[:, -1]
-        return Belief(state, model.frames.carry(*moved, k - 1, k))
+        return Belief(state, model.frames.carry(*moved, k - 1, k, False))
     transition = model.transition(sensitivity[:, -1], k - 1, k)
     inverse = inverse_of_some_rows(transition)
     back = model.chart(belief.state) @ inverse @ model.inverse_chart(state)

@@ -227,6 +227,10 @@ def _belief(model: ReplayModel, solution: Solution, k: int) -> Belief:
     """Belief of epoch k by everything measured so far."""
     at = solution.at
     transition = model.transition(at.last_sensitivity, 0, k)
+    if model.frames is not None:
+        state = move(model, at.last_state, (transition @ solution.step[..., None])[..., 0])
+        known = at.state, at.last_state, at.information, at.last_sensitivity
+        return Belief(state, model.frames.carry(*known, 0, k, True))
     to_chart = model.chart(at.last_state) @ transition
     state = model.retract(at.last_state, (to_chart @ solution.step[..., None])[..., 0])
     back = inverse_of_some_rows(transition) @ model.inverse_chart(at.last_state)

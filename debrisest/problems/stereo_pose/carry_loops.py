@@ -12,9 +12,12 @@ from debrisest.problems.stereo_pose.chart_loops import by_own, by_plain, place
 
 
 @compiled
-def carried(before: Array, after: Array, information: Array, turning: Array, back: Array) -> Array:
+def carried(
+    before: Array, after: Array, information: Array, turning: Array, back: Array, plain: bool
+) -> Array:
     """Return information (run, n_e, n_e) in the charts of states (run, n) of a later epoch.
 
+    What is given is ``plain``, or in the charts of those before.
     ``turning (run, 6, 8)`` as of `chart.propagate`; ``back (6, 6)`` takes the centre's errors back.
     """
     n_e, points = information.shape[1], (before.shape[1] - 15) // 3
@@ -24,8 +27,9 @@ def carried(before: Array, after: Array, information: Array, turning: Array, bac
         turned_back(turning[run], unturned)
         matrix[:] = information[run]
         for _ in range(2):
-            place(before[run], turn, arms)
-            by_plain(vector(before[run, 6:]), turn, arms, matrix, between)
+            if not plain:
+                place(before[run], turn, arms)
+                by_plain(vector(before[run, 6:]), turn, arms, matrix, between)
             moved_back(unturned, back, matrix, between)
             place(after[run], turn, arms)
             by_own(vector(after[run, 6:]), turn, arms, matrix, between)

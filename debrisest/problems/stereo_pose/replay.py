@@ -89,10 +89,16 @@ def _frames(known: StereoGeometry, sigma: Array, centre: Array, back: Array) -> 
     camera = *_camera(known), known.rows, sigma
 
     def carry(
-        before: Array, after: Array, information: Array, turning: Array, first: int, last: int
+        before: Array,
+        after: Array,
+        information: Array,
+        turning: Array,
+        first: int,
+        last: int,
+        plain: bool,
     ) -> Array:
         returned = centre[first] @ back[last]
-        return carried(before, after, information, turning.copy(), returned)
+        return carried(before, after.copy(), information, turning.copy(), returned, plain)
 
     def update(
         state: Array,
