@@ -28,17 +28,22 @@ from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.tracks import tracks
 from debrisest.clock import Clock
 from debrisest.dynamics.log_inertia import log_ratios
+from debrisest.dynamics.pointing import camera_axes
 from debrisest.filters.association.evidence import Beside
 from debrisest.filters.association.restless import Bank
 from debrisest.filters.association.sensor import updated
 from debrisest.filters.association.update import Scan, Tracks
 from debrisest.filters.association.weights import Validation, probabilistic
+from debrisest.filters.landmark_model import split
+from debrisest.filters.landmarks.cost import Prior, Unknowns, cost
+from debrisest.filters.landmarks.update import Belief, UpdateSettings, update
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
 from debrisest.filters.replay.replay import replay
 from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.camera_range import course as in_orbit
 from debrisest.problems.camera_range import model as camera_range
 from debrisest.problems.camera_range import redundant_model
+from debrisest.problems.camera_range.projection import landmark_model
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
 from debrisest.problems.stereo_pose.truth import draw_guess
@@ -69,6 +74,7 @@ def kernels() -> dict[str, Kernel]:
         "the same, one run": lambda: in_orbit.rotation(orbit, core[:1], 1165, 1),
         "descents on known points, 4 arcs of 150 epochs": descents(),
         "91 states, sigma points of 20 runs moved": sigma_points(),
+        **of_landmarks(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
         **{
             f"association, one sensor of seven detections, {runs} runs": association(runs)
@@ -105,6 +111,38 @@ def sigma_points() -> Kernel:
     state[:, moved, moved - 1] += 1e-3
     state[:, 91 + moved, moved - 1] -= 1e-3
     return lambda: (redundant_model.process(known, state),)
+
+
+def of_landmarks() -> dict[str, Kernel]:
+    """Return those of the landmark batch and filter: 20 runs, twelve points, 200 epochs."""
+    draws, frames, runs = np.random.default_rng(5), np.arange(200), 20
+    known = camera_range.CameraRangeGeometry(
+        camera=np.broadcast_to(camera_axes(np.array([5.0, 17.0, 6.0])), (runs, 200, 3, 3)),
+        points=12,
+        mean_motion=1e-3,
+        step=5.0,
+        focal=1000.0,
+        pixel_sigma=1.0,
+        range_sigma=0.01,
+    )
+    model = landmark_model(known)
+    parameters = np.tile(np.r_[0.01, 0.005, 0.015, 5.0, 17.0, 6.0, np.zeros(8)], (runs, 1))
+    parameters[:, 9:] = 0.1 * draws.normal(size=(runs, 5))
+    at = Unknowns(parameters, draws.uniform(-1, 1, (runs, 12, 3)), np.ones((runs, 12), np.bool_))
+    prior = Prior(at.vector, np.tile(np.eye(50), (runs, 1, 1)))
+    cores = model.path(model.start(parameters)[0], 199)
+    rows = model.rows(cores, at.points[:, None], frames)
+    shown = np.concatenate([rows.shown.reshape(runs, 200, -1), rows.common], axis=-1)
+    seen = split(model, shown + model.common_sigma * draws.normal(size=shown.shape))
+    belief = Belief(cores[:, 9], at.points, np.tile(1e-4 * np.eye(53), (runs, 1, 1)))
+    frame, settings = seen.at(slice(None), 9), UpdateSettings()
+    return {
+        "landmarks, linearised cost of 20 runs, 200 epochs": lambda: cost(
+            model, seen, prior, at, frames, False
+        )[:3],
+        "landmarks, an update of 20 runs": lambda: update(model, belief, frame, 9, settings)[0],
+        "landmarks, a step of 20 runs": lambda: model.process(belief.core),
+    }
 
 
 def of_replay() -> dict[str, Kernel]:
