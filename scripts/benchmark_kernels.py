@@ -36,12 +36,15 @@ from debrisest.control.two_stage import Controller
 from debrisest.dynamics import kepler
 from debrisest.dynamics.integrators import rk4_step
 from debrisest.dynamics.log_inertia import log_ratios
+from debrisest.dynamics.pointing import camera_axes
 from debrisest.filters.association.single import associated
-from debrisest.filters.association.update import Tracks
 from debrisest.filters.association.weights import Validation
 from debrisest.filters.bound.information import Information, gather
 from debrisest.filters.kalman.extended import extended
 from debrisest.filters.kalman.unscented import unscented
+from debrisest.filters.landmark_model import split
+from debrisest.filters.landmarks import update as landmarks
+from debrisest.filters.landmarks.cost import Prior, Unknowns, cost
 from debrisest.filters.model import Model
 from debrisest.filters.replay.frame_update import Belief, covariance_of, predict, update
 from debrisest.filters.replay.measured_arc import linearize, measured_arc
@@ -50,6 +53,7 @@ from debrisest.filters.replay_model import ReplayModel
 from debrisest.problems.camera_range import course as in_orbit
 from debrisest.problems.camera_range import model as camera_range
 from debrisest.problems.camera_range import redundant_model
+from debrisest.problems.camera_range.projection import landmark_model
 from debrisest.problems.orbit_from_pixels.model import ObserverGeometry, scan_model
 from debrisest.problems.stereo_pose import model as stereo_pose
 from debrisest.problems.stereo_pose.replay import replay_model
@@ -82,9 +86,10 @@ def kernels() -> dict[str, Kernel]:
         "the same, one run": lambda: in_orbit.rotation(orbit, core[:1], 1165, 1),
         "descents on known points, 4 arcs of 150 epochs": descents(),
         "unscented filter, 91 states, 20 runs of two epochs": sigma_points(),
-        "unscented filter, 14 states, 100 runs of ten epochs": tumbling(),
+        "unscented filter, 14 states, 100 runs of ten epochs": attitude_filter(),
         "iterated filter, 30 states, 100 runs of four epochs": iterated(),
         "bound, 53 unknowns, 20 runs of 16 epochs": bound(),
+        **of_landmarks(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
         **{
             f"association, 30 epochs of three detections, {runs} runs": association(runs)
@@ -155,7 +160,7 @@ def bound() -> Kernel:
     return lambda: gather(Information(prior.copy(), np.zeros((20, 53))), rows, residual, moved)
 
 
-def tumbling() -> Kernel:
+def attitude_filter() -> Kernel:
     """Return an unscented filter of 14 errors, ten epochs long."""
     draws = np.random.default_rng(8)
     state = np.tile(np.append(np.zeros(11), MOMENTS), (100, 1))
@@ -189,6 +194,40 @@ def iterated() -> Kernel:
     )
     given = np.zeros((100, 30)), np.tile(np.eye(30), (100, 1, 1)), draws.normal(size=(100, 4, 45))
     return lambda: (extended(model, *given, iterations=3, stop="relative_norm").state,)
+
+
+def of_landmarks() -> dict[str, Kernel]:
+    """Return those of the landmark batch and filter: 20 runs, twelve points, 200 epochs."""
+    draws, frames, runs = np.random.default_rng(5), np.arange(200), 20
+    known = camera_range.CameraRangeGeometry(
+        camera=np.broadcast_to(camera_axes(np.array([5.0, 17.0, 6.0])), (runs, 200, 3, 3)),
+        points=12,
+        mean_motion=1e-3,
+        step=5.0,
+        focal=1000.0,
+        pixel_sigma=1.0,
+        range_sigma=0.01,
+    )
+    model = landmark_model(known)
+    parameters = np.tile(np.r_[0.01, 0.005, 0.015, 5.0, 17.0, 6.0, np.zeros(8)], (runs, 1))
+    parameters[:, 9:] = 0.1 * draws.normal(size=(runs, 5))
+    at = Unknowns(parameters, draws.uniform(-1, 1, (runs, 12, 3)), np.ones((runs, 12), np.bool_))
+    prior = Prior(at.vector, np.tile(np.eye(50), (runs, 1, 1)))
+    cores = model.path(model.start(parameters)[0], 199)
+    rows = model.rows(cores, at.points[:, None], frames)
+    shown = np.concatenate([rows.shown.reshape(runs, 200, -1), rows.common], axis=-1)
+    seen = split(model, shown + model.common_sigma * draws.normal(size=shown.shape))
+    belief = landmarks.Belief(cores[:, 9], at.points, np.tile(1e-4 * np.eye(53), (runs, 1, 1)))
+    frame, settings = seen.at(slice(None), 9), landmarks.UpdateSettings()
+    return {
+        "landmarks, linearised cost of 20 runs, 200 epochs": lambda: cost(
+            model, seen, prior, at, frames, False
+        )[:3],
+        "landmarks, an update of 20 runs": lambda: landmarks.update(
+            model, belief, frame, 9, settings
+        )[0],
+        "landmarks, a step of 20 runs": lambda: model.process(belief.core),
+    }
 
 
 def of_replay() -> dict[str, Kernel]:

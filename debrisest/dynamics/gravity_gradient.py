@@ -1,12 +1,11 @@
 """Rotation of a rigid body under the gravity-gradient torque of the Earth."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from debrisest.arrays import Array
-from debrisest.attitude import quaternion
 from debrisest.dynamics.driven_rotation import driven
 from debrisest.dynamics.kepler import MU_EARTH
 
@@ -27,11 +26,25 @@ def tumble(
     size over ``r``, and a constant one ``torque (3,)`` in body axes, N m.
     """
 
-    def acting(time: float, q: Array) -> Array:
-        r_i = position(time)
-        r_b = quaternion.to_matrix(q).T @ r_i
-        (x, y, z), (a, b, c) = r_b.tolist(), (inertia @ r_b).tolist()
-        crossed = np.array([y * c - z * b, z * a - x * c, x * b - y * a])
-        return np.asarray(3.0 * mu / math.dist(r_i, (0.0, 0.0, 0.0)) ** 5 * crossed + torque)
+    first, second, third = inertia.tolist()
+    more = np.broadcast_to(torque, 3).tolist()
+
+    def acting(time: float, q: Sequence[float]) -> Sequence[float]:
+        (w, x, y, z), r_i = q, position(time).tolist()
+        u, v, s = r_i
+        by, around = 2.0 * (x * u + y * v + z * s), 2.0 * w
+        near = 2.0 * w * w - 1.0
+        r = (
+            near * u + by * x - around * (y * s - z * v),
+            near * v + by * y - around * (z * u - x * s),
+            near * s + by * z - around * (x * v - y * u),
+        )
+        a, b, c = (row[0] * r[0] + row[1] * r[1] + row[2] * r[2] for row in (first, second, third))
+        strength = 3.0 * mu / math.hypot(*r_i) ** 5
+        return (
+            strength * (r[1] * c - r[2] * b) + more[0],
+            strength * (r[2] * a - r[0] * c) + more[1],
+            strength * (r[0] * b - r[1] * a) + more[2],
+        )
 
     return driven(times, q0, rate0, inertia, acting)

@@ -25,9 +25,11 @@ def with_derivative(s: Array) -> tuple[Array, Array, Array]:
     derivative, matrix, axes = np.empty((runs, 5, 3, 3)), np.empty((3, 3)), np.empty((3, 3))
     divided, turned = np.empty((3, 3)), np.empty((3, 3))
     for run in range(runs):
-        matrix[:], axes[:] = 0.0, np.eye(3)
-        for b in range(5):
-            matrix += s[run, b] * BASIS[b]
+        for i in range(3):
+            for j in range(3):
+                axes[i, j], matrix[i, j] = (1.0 if i == j else 0.0), 0.0
+                for b in range(5):
+                    matrix[i, j] += s[run, b] * BASIS[b, i, j]
         _diagonalise(matrix, axes)
         for i in range(3):
             for j in range(3):
@@ -40,9 +42,8 @@ def with_derivative(s: Array) -> tuple[Array, Array, Array]:
                 ratio = 1.0 + half**2 / 6.0 if abs(half) < _CLOSE else np.sinh(half) / half
                 divided[i, j] = np.exp(0.5 * (matrix[i, i] + matrix[j, j])) * ratio
         for b in range(5):
-            _sandwiched(axes, BASIS[b], True, turned)
-            turned *= divided
-            _sandwiched(axes, turned.copy(), False, derivative[run, b])
+            _turned(axes, BASIS[b], divided, turned)
+            _back(axes, turned, derivative[run, b])
     return inertia, inverse, derivative
 
 
@@ -70,15 +71,23 @@ def _diagonalise(matrix: Array, axes: Array) -> None:
 
 
 @compiled
-def _sandwiched(axes: Array, matrix: Array, into: bool, result: Array) -> None:
-    """Write a matrix (3, 3) as the axes see it, or back from them."""
+def _turned(axes: Array, matrix: Array, factors: Array, result: Array) -> None:
+    """Write a matrix (3, 3) as the axes see it, each element by its factor."""
     for i in range(3):
         for j in range(3):
-            value = 0.0
+            result[i, j] = 0.0
             for k in range(3):
                 for m in range(3):
-                    if into:
-                        value += axes[k, i] * matrix[k, m] * axes[m, j]
-                    else:
-                        value += axes[i, k] * matrix[k, m] * axes[j, m]
-            result[i, j] = value
+                    result[i, j] += axes[k, i] * matrix[k, m] * axes[m, j]
+            result[i, j] *= factors[i, j]
+
+
+@compiled
+def _back(axes: Array, matrix: Array, result: Array) -> None:
+    """Write a matrix (3, 3) that the axes see as it is."""
+    for i in range(3):
+        for j in range(3):
+            result[i, j] = 0.0
+            for k in range(3):
+                for m in range(3):
+                    result[i, j] += axes[i, k] * matrix[k, m] * axes[j, m]

@@ -80,4 +80,5 @@ def _driven(
 
 
 def _constant(torque: Array) -> Torque:
-    return lambda time, q: torque
+    told: list[float] = torque.tolist()
+    return lambda time, q: told

@@ -40,20 +40,28 @@ def rotation(
     x, new, tried = np.empty(7), np.empty(7), np.empty(7)
     by_vector, by_ratios, by_motion = np.empty((3, 9)), np.empty((12, _WIDE)), np.empty((3, 6))
     ratios, beside = np.empty(_WIDE), np.zeros((3, _WIDE))
-    now, at, ahead, total = np.empty((4, 6, _WIDE))
+    now, at = np.empty((6, _WIDE)), np.empty((6, _WIDE))
+    ahead, total = np.empty((6, _WIDE)), np.empty((6, _WIDE))
     for run in range(len(start)):
         body = (inertia[run], inverse[run], derivative[run])
-        x[:], now[:] = start[run], np.eye(6, _WIDE)
+        now[:] = 0.0
+        for a in range(6):
+            now[a, a] = 1.0
+        for a in range(7):
+            x[a] = start[run, a]
         _forms(body, by_vector, by_ratios)
         for k in range(last * count + 1):
             if k % count == 0:
-                moved[run, k // count] = x
+                for a in range(7):
+                    moved[run, k // count, a] = x[a]
                 if sensitive:
-                    errors[run, k // count] = now[:, :11]
+                    _copied(now, errors[run, k // count])
             if k == last * count:
                 break
-            new[:], tried[:] = x, x
-            total[:], at[:] = now, now
+            for a in range(7):
+                new[a] = tried[a] = x[a]
+            _copied(now, total)
+            _copied(now, at)
             for i in range(4):
                 slopes(tried, body, pace, turn, spin, radial, vectors)
                 part, weight = _PARTS[i] * duration, _WEIGHTS[i] * duration / 6.0
@@ -65,9 +73,19 @@ def rotation(
                 for a in range(7):
                     tried[a] = x[a] + part * slope[a]
                     new[a] += weight * slope[a]
-            new[:4] /= np.sqrt(np.sum(new[:4] ** 2))
-            x[:], now[:] = new, total
+            size = np.sqrt(new[0] ** 2 + new[1] ** 2 + new[2] ** 2 + new[3] ** 2)
+            for a in range(7):
+                x[a] = new[a] / size if a < 4 else new[a]
+            now, total = total, now
     return moved, errors
+
+
+@compiled
+def _copied(source: Array, result: Array) -> None:
+    """Write what of a wider matrix there is room for."""
+    for a in range(len(result)):
+        for b in range(result.shape[1]):
+            result[a, b] = source[a, b]
 
 
 @compiled

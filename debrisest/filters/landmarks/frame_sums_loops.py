@@ -61,8 +61,10 @@ def sums(
                     shared, by_start[run, k], row, information[run], gradient[run], costs[run]
                 )
             _by_start(by_start[run, k], own, half, crossed, across, information[run], gradient[run])
-        information[run, :n_x, n_x:] += across
-        information[run, n_x:, :n_x] = information[run, :n_x, n_x:].T
+        for a in range(n_x):
+            for b in range(n_x, n):
+                information[run, a, b] += across[a, b - n_x]
+                information[run, b, a] = information[run, a, b]
     return costs, information, gradient, counts, landmarks
 
 
@@ -259,7 +261,9 @@ def _without_shared(
             for d in range(c):
                 right[c, a] -= shared[c, d] * right[d, a]
             right[c, a] /= shared[c, c]
-        row[:n_x], row[n_x:], seen = 0.0, right[c, s:-1], right[c, -1]
+        row[:n_x], seen = 0.0, right[c, -1]
+        for a in range(n_x, n):
+            row[a] = right[c, s + a - n_x]
         for a in range(s):
             for b in range(n_x):
                 row[b] += right[c, a] * by_start[a, b]

@@ -57,8 +57,11 @@ def step(
         else:
             _relative(derivative, owners, count, shown_by, correction[run], tableau)
         _whiten(tableau, count, n)
-        whitened[run, :count], whitened[run, count:] = tableau[:count, :n], 0.0
-        squares[run] = np.sum(tableau[:count, -1] ** 2)
+        whitened[run, count:] = 0.0
+        for q in range(count):
+            squares[run] += tableau[q, -1] ** 2
+            for a in range(n):
+                whitened[run, q, a] = tableau[q, a]
         _sums(tableau, count, left, new)
         for a in range(n):
             variance = covariance[run, a, a]
@@ -191,7 +194,9 @@ def _gated(
     if kept < count:
         for i in range(kept):
             q = place[i]
-            tableau[i, :n], tableau[i, -1] = tableau[q, :n], tableau[q, -1]
+            tableau[i, -1] = tableau[q, -1]
+            for a in range(n):
+                tableau[i, a] = tableau[q, a]
             for j in range(i, kept):
                 tableau[i, n + j] = tableau[q, n + place[j]]
     return kept
@@ -202,7 +207,8 @@ def _square(tableau: Array, n: int, first: int, last: int, block: Array) -> floa
     """Square of a few innovations by their covariance."""
     square, size = 0.0, last - first
     for q in range(size):
-        block[q, q + 1 : size] = tableau[first + q, n + first + q + 1 : n + last]
+        for e in range(q + 1, size):
+            block[q, e] = tableau[first + q, n + first + e]
         diagonal, left = tableau[first + q, n + first + q], tableau[first + q, -1]
         for r in range(q):
             diagonal -= block[r, q] ** 2

@@ -92,8 +92,8 @@ def _pixels(
         by_position = turn_by_position(cores[..., POSITION]) if implied else to_camera
         return pixels(
             np.ascontiguousarray(cores),
-            np.ascontiguousarray(points[:, 0]),
-            np.ascontiguousarray(to_camera),
+            np.ascontiguousarray(np.broadcast_to(points[:, 0], (len(cores), *points.shape[2:]))),
+            np.ascontiguousarray(np.broadcast_to(to_camera, (*cores.shape[:2], 3, 3))),
             np.ascontiguousarray(by_position),
             (known.focal, _NEAREST),
             implied,

@@ -38,9 +38,7 @@ def pixels(
             _turned(cores[run, k], to_camera[run, k], turn)
             slopes = by_core[run, k], by_point[run, k], by_bias[run, k]
             frame = (cores[run, k], to_camera[run, k], by_position[run, k])
-            _frame(frame, points[run], turn, shift, optics, implied, shown[run, k], slopes)
-            if biased:
-                by_core[run, k, :, :, wide[0] - 3 :] = by_bias[run, k]
+            _frame(frame, points[run], turn, shift, optics, implied, biased, shown[run, k], slopes)
     return shown, by_core, by_point, by_bias
 
 
@@ -66,6 +64,7 @@ def _frame(
     shift: Array,
     optics: tuple[float, float],
     implied: bool,
+    biased: bool,
     shown: Array,
     slopes: tuple[Array, Array, Array],
 ) -> None:
@@ -73,8 +72,9 @@ def _frame(
     core, away, by_position = frame
     by_core, by_point, by_bias = slopes
     u, v, w = core[7], core[8], core[9]
-    if not implied:
-        shift[:] = -away
+    for i in range(3):
+        for j in range(3):
+            shift[i, j] = -away[i, j]
     for n in range(len(points)):
         a, b, c = points[n, 0], points[n, 1], points[n, 2]
         x = turn[0, 0] * a + turn[0, 1] * b + turn[0, 2] * c
@@ -100,6 +100,9 @@ def _frame(
                 by_bias[n, i, 0] = scale * (ratio * y + (z if i else 0.0))
                 by_bias[n, i, 1] = -scale * (ratio * x + (0.0 if i else z))
                 by_bias[n, i, 2] = scale * (-x if i else y)
+            if biased:
+                for j in range(3):
+                    by_core[n, i, by_core.shape[2] - 3 + j] = by_bias[n, i, j]
 
 
 @compiled
