@@ -24,8 +24,14 @@ from debrisest.arrays import Array
 from debrisest.attitude import quaternion
 from debrisest.batch.arc import Arc, along, course, displaced
 from debrisest.batch.descent import descend_all
+from debrisest.batch.local_rates import local_rates
+from debrisest.batch.path import path_of
 from debrisest.batch.point_sums import KnownPoints
+from debrisest.batch.rigid_sets import pairs
+from debrisest.batch.smoother import Wander, smooth
+from debrisest.batch.spread import straight
 from debrisest.batch.tracks import tracks
+from debrisest.batch.windows import refitted
 from debrisest.clock import Clock
 from debrisest.dynamics.log_inertia import log_ratios
 from debrisest.filters.association.evidence import Beside
@@ -66,7 +72,7 @@ def kernels() -> dict[str, Kernel]:
             orbit, core, 1165, 1
         ),
         "the same, one run": lambda: camera_range._rotation(orbit, core[:1], 1165, 1),
-        "descents on known points, 4 arcs of 150 epochs": descents(),
+        **of_known_points(),
         "91 states, sigma points of 20 runs moved": sigma_points(),
         **{f"{name} ": kernel for name, kernel in of_replay().items()},
         **{
@@ -76,19 +82,42 @@ def kernels() -> dict[str, Kernel]:
     }
 
 
-def descents() -> Kernel:
-    """Return descents from beside the motion of eight points."""
-    draws, times = np.random.default_rng(2), np.linspace(0.0, 300.0, 150)
-    truth, model = (
-        Arc(150.0, IDENTITY, RATE, log_ratios(np.diag(MOMENTS))),
-        draws.normal(size=(8, 3)),
-    )
-    turned = model @ np.swapaxes(quaternion.to_matrix(along(truth, times)[0]), -1, -2)
-    seen = tracks(times, turned + 0.02 * draws.normal(size=turned.shape), 0.02)
-    evidence = KnownPoints(seen, model)
+def of_known_points() -> dict[str, Kernel]:
+    """Return what the batch does with eight points of a body that tumbles."""
+    evidence, truth = eight_points(150)
+    draws = np.random.default_rng(2)
     errors = np.repeat([1e-3, 1e-5, 0.02], [3, 3, 5]) * draws.normal(size=(4, 11))
     starts = [displaced(truth, error) for error in errors]
-    return lambda: (np.stack([end.hold for end in descend_all(evidence, starts, 12)]),)
+    longer, middle = eight_points(1500)
+    known = straight(middle, 1e-10 * np.eye(11))
+    local = local_rates(evidence.times, evidence.seen())
+    assert local is not None
+    wander = Wander(3, 1e-6, 1.0)
+    return {
+        "descents on known points, 4 arcs of 150 epochs": lambda: tuple(
+            end.hold for end in descend_all(evidence, starts, 12)
+        ),
+        "fit of a window and its tests, 150 epochs": lambda: fit_of(evidence, starts[0]),
+        "distances of eight points, 1500 epochs": lambda: pairs(longer.tracks, longer.model)[:2],
+        "motion with its spread, 1500 epochs": lambda: path_of(middle, known, longer.times)[1:],
+        "smoother, 150 epochs": lambda: smooth(evidence, local, wander, evidence.times)[1:5],
+    }
+
+
+def eight_points(count: int) -> tuple[KnownPoints, Arc]:
+    """Return the points at so many epochs, and the motion."""
+    draws, times = np.random.default_rng(2), np.linspace(0.0, 2.0 * count, count)
+    truth = Arc(float(count), IDENTITY, RATE, log_ratios(np.diag(MOMENTS)))
+    model = draws.normal(size=(8, 3))
+    turned = model @ np.swapaxes(quaternion.to_matrix(along(truth, times)[0]), -1, -2)
+    seen = tracks(times, turned + 0.02 * draws.normal(size=turned.shape), 0.02)
+    return KnownPoints(seen, model), truth
+
+
+def fit_of(evidence: KnownPoints, start: Arc) -> tuple[Array, ...]:
+    """Return what a window's fit from a start is made of."""
+    growth = refitted(evidence, start)
+    return growth.found.hold, growth.fit.blocks
 
 
 def sigma_points() -> Kernel:
