@@ -98,6 +98,17 @@ def test_paths_are_the_same(monkeypatch, bends) -> None:
     close(*both(monkeypatch, spread.covariance, found.arc), 1e-10)
 
 
+def test_gates_are_the_same(monkeypatch) -> None:
+    evidence, (q, rate) = seen(0.2, 8), along(TRUTH, TIMES)
+    fast, slow = both(monkeypatch, evidence.gated, q, rate, 25.0)
+    several = slow.tracks.seen.sum(axis=1) > 1
+    np.testing.assert_array_equal(fast.tracks.weight[several], slow.tracks.weight[several])
+    assert several.any() and slow.tracks.seen.sum() < evidence.tracks.seen.sum()
+    fast, slow = both(monkeypatch, evidence.gated, q, rate, 1e-3)
+    np.testing.assert_array_equal(fast.tracks.weight, evidence.tracks.weight)
+    np.testing.assert_array_equal(slow.tracks.weight, evidence.tracks.weight)
+
+
 @pytest.mark.parametrize("known", [True, False])
 def test_rigid_sets_are_the_same(monkeypatch, known) -> None:
     evidence = seen(0.1)
