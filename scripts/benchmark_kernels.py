@@ -25,8 +25,14 @@ from debrisest.batch.align_clouds import align_clouds
 from debrisest.batch.arc import Arc, along, course, displaced
 from debrisest.batch.descent import descend_all
 from debrisest.batch.free_points import FreePoints
+from debrisest.batch.local_rates import local_rates
+from debrisest.batch.path import path_of
 from debrisest.batch.point_sums import KnownPoints
-from debrisest.batch.tracks import Tracks, tracks
+from debrisest.batch.rigid_sets import pairs
+from debrisest.batch.smoother import Wander, smooth
+from debrisest.batch.spread import straight
+from debrisest.batch.tracks import tracks
+from debrisest.batch.windows import refitted
 from debrisest.clock import Clock
 from debrisest.control.camera import Camera
 from debrisest.control.closed_loop import ClosedLoop
@@ -84,7 +90,7 @@ def kernels() -> dict[str, Kernel]:
             orbit, core, 1165, 1
         ),
         "the same, one run": lambda: in_orbit.rotation(orbit, core[:1], 1165, 1),
-        "descents on known points, 4 arcs of 150 epochs": descents(),
+        **of_known_points(),
         "unscented filter, 91 states, 20 runs of two epochs": sigma_points(),
         "unscented filter, 14 states, 100 runs of ten epochs": attitude_filter(),
         "iterated filter, 30 states, 100 runs of four epochs": iterated(),
@@ -100,35 +106,55 @@ def kernels() -> dict[str, Kernel]:
     }
 
 
-def tumbling(epochs: int) -> tuple[Arc, Tracks, Array]:
-    """Return a motion, and tracks and places of eight points."""
-    draws, times = np.random.default_rng(2), np.linspace(0.0, 300.0, epochs)
-    truth, model = (
-        Arc(150.0, IDENTITY, RATE, log_ratios(np.diag(MOMENTS))),
-        draws.normal(size=(8, 3)),
-    )
-    turned = model @ np.swapaxes(quaternion.to_matrix(along(truth, times)[0]), -1, -2)
-    return truth, tracks(times, turned + 0.02 * draws.normal(size=turned.shape), 0.02), model
-
-
 def unknown_points() -> dict[str, Kernel]:
     """Return how clouds of points are laid over each other, and what these tell of an arc."""
-    truth, seen, model = tumbling(1000)
-    points, motion = FreePoints(seen, model), course(truth, seen.times)
+    evidence, truth = eight_points(1000)
+    points = FreePoints(evidence.tracks, evidence.model)
+    motion = course(truth, evidence.times)
     return {
-        "unknown points, clouds of 1000 epochs": lambda: (align_clouds(seen).model,),
+        "unknown points, clouds of 1000 epochs": lambda: (align_clouds(evidence.tracks).model,),
         "unknown points, normal equations": lambda: (points.normal(motion).hold,),
     }
 
 
-def descents() -> Kernel:
-    """Return descents from beside the motion of eight points."""
-    truth, seen, model = tumbling(150)
-    evidence = KnownPoints(seen, model)
-    errors = np.repeat([1e-3, 1e-5, 0.02], [3, 3, 5])
-    errors = errors * np.random.default_rng(3).normal(size=(4, 11))
+def of_known_points() -> dict[str, Kernel]:
+    """Return what the batch does with eight points of a body that tumbles."""
+    evidence, truth = eight_points(150)
+    draws = np.random.default_rng(2)
+    errors = np.repeat([1e-3, 1e-5, 0.02], [3, 3, 5]) * draws.normal(size=(4, 11))
     starts = [displaced(truth, error) for error in errors]
-    return lambda: (np.stack([end.hold for end in descend_all(evidence, starts, 12)]),)
+    longer, middle = eight_points(1500)
+    known = straight(middle, 1e-10 * np.eye(11))
+    local = local_rates(evidence.times, evidence.seen())
+    assert local is not None
+    wander = Wander(3, 1e-6, 1.0)
+    return {
+        "descents on known points, 4 arcs of 150 epochs": lambda: tuple(
+            end.hold for end in descend_all(evidence, starts, 12)
+        ),
+        "fit of a window and its tests, 150 epochs": lambda: fit_of(evidence, starts[0]),
+        "distances of eight points, 1500 epochs": lambda: (
+            np.nan_to_num(pairs(longer.tracks, longer.model).noise),
+        ),
+        "motion with its spread, 1500 epochs": lambda: path_of(middle, known, longer.times)[1:],
+        "smoother, 150 epochs": lambda: smooth(evidence, local, wander, evidence.times)[1:5],
+    }
+
+
+def eight_points(count: int) -> tuple[KnownPoints, Arc]:
+    """Return the points at so many epochs, and the motion."""
+    draws, times = np.random.default_rng(2), np.linspace(0.0, 2.0 * count, count)
+    truth = Arc(float(count), IDENTITY, RATE, log_ratios(np.diag(MOMENTS)))
+    model = draws.normal(size=(8, 3))
+    turned = model @ np.swapaxes(quaternion.to_matrix(along(truth, times)[0]), -1, -2)
+    seen = tracks(times, turned + 0.02 * draws.normal(size=turned.shape), 0.02)
+    return KnownPoints(seen, model), truth
+
+
+def fit_of(evidence: KnownPoints, start: Arc) -> tuple[Array, ...]:
+    """Return what a window's fit from a start is made of."""
+    growth = refitted(evidence, start)
+    return growth.found.hold, growth.fit.blocks
 
 
 def sigma_points() -> Kernel:

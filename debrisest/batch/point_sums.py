@@ -134,6 +134,8 @@ class KnownPoints:
         The worst point of an epoch goes first, and the mean is taken anew; at most four of an
         epoch. Unchanged if more than half of all observations would go.
         """
+        if compiled.available():
+            return self._gated_compiled(q, limit)
         kept: Self = self
         for _ in range(4):
             worst = kept._worst(q, rate, limit)
@@ -142,6 +144,14 @@ class KnownPoints:
             kept = type(self)(kept.tracks.without(worst), self.model)
         few = kept.tracks.seen.sum() < _FEWEST_KEPT * self.tracks.seen.sum()
         return self if few else kept
+
+    def _gated_compiled(self, q: Array, limit: float) -> Self:
+        from debrisest.batch import known_points_loops as loops
+
+        (points, weight), at = self.for_loops, np.ascontiguousarray(q.T)
+        square = np.empty(weight.shape)
+        loops.squares(points, weight, at, square)
+        return self.weighed(loops.gated(points, weight, at, square, limit))
 
     def weighed(self, weight: Array) -> Self:
         """Return it with other weights (time, feature)."""

@@ -18,6 +18,7 @@ from debrisest.batch.observability import lost_directions, possible
 from debrisest.batch.other_minima import lowest_minimum
 from debrisest.batch.outliers import without_biased_points
 from debrisest.batch.path import Path, path_of, unknown_path
+from debrisest.batch.point_sums import KnownPoints
 from debrisest.batch.search import search
 from debrisest.batch.smoother import Wander, smooth, wander
 from debrisest.batch.spread import Spread
@@ -127,10 +128,17 @@ def _torque_free(
         fit,
         growth.span,
         noise,
-        scaled.settled(along(found.arc, scaled.times)[0]),
+        _settled(scaled, found.arc),
         local,
         None,
     )
+
+
+def _settled(evidence: Evidence, arc: Arc) -> Evidence:
+    """Return evidence with its nuisances, if it has any, at their best for an arc."""
+    if isinstance(evidence, KnownPoints):
+        return evidence
+    return evidence.settled(along(arc, evidence.times)[0])
 
 
 def _judged(fit: Fit, noise_known: bool) -> Judged:

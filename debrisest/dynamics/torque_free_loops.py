@@ -14,6 +14,7 @@ from debrisest.compiled import compiled
 from debrisest.dynamics.sine_loops import sines
 
 Body = tuple[Any, ...]
+_SAMPLES = 16  # of half a period, at first
 _SMALLEST_TERM = 1e-15  # of the precession, of its mean rate
 _MOST = 24  # Landen transformations and steps of means, of which a handful is needed
 
@@ -52,10 +53,10 @@ def at(times: Array, body: Body, rate: Array, about: Array) -> None:
     """
     motion, harmonics, by_rate, side, hand, _ = body
     _rates(times, motion, rate)
-    turn = _turned(times, harmonics, 2.0 * motion[3] / motion[2][0])
-    sines(0.5 * turn, about[1], about[0])
+    _half_turned(times, harmonics, 2.0 * motion[3] / motion[2][0], about)
+    sines(about[0], about[3], about[2])
     for t in range(len(times)):
-        cos, sin = about[0, t], about[1, t]
+        cos, sin = about[2, t], about[3, t]
         cosine = math.sqrt(0.5 + 0.5 * side * by_rate[0] * rate[0, t])
         b = 0.5 * by_rate[1] * rate[1, t] / cosine
         c = 0.5 * by_rate[2] * rate[2, t] / cosine
@@ -147,40 +148,62 @@ def _rates(times: Array, motion: Body, rate: Array) -> None:
 
 @compiled
 def _harmonics(motion: Body, moment: Array, momentum: float, side: float) -> tuple[float, Any]:
-    """Mean of the precession's rate and the sums of its series, highest first."""
-    rate0, _, shape, quarter, _ = motion
-    enough = max(quarter, 2.0) if math.isfinite(quarter) else 2.0
-    count = 14 * math.ceil(enough)
-    rate, phase = np.empty((3, count)), np.arange(count) / count
-    _rates(2.0 * quarter / shape[0] * phase, motion, rate)
-    speed, cos, sin = np.empty(count), np.empty(count), np.empty(count)
-    sines(2.0 * math.pi * phase, sin, cos)
-    twice_energy, mean = np.sum(moment * rate0**2), 0.0
-    for k in range(count):
-        circled = abs(rate[0, k])
-        speed[k] = (twice_energy + momentum * circled) / (momentum + moment[0] * circled)
-        mean += speed[k] / count
-    tails = _terms(speed, cos, sin, _SMALLEST_TERM * mean)[::-1].copy()
+    """Mean of the precession's rate and the sums of its series, highest first.
+
+    Samples are doubled until the highest terms vanish, or there are as many as numpy's code takes.
+    """
+    quarter = motion[3]
+    most = 14 * math.ceil(max(quarter, 2.0) if math.isfinite(quarter) else 2.0)
+    count = _SAMPLES
+    mean, terms = _series(motion, moment, momentum, count)
+    while count < most and not len(terms) < count // 2 - 1:
+        count *= 2
+        mean, terms = _series(motion, moment, momentum, count)
+    tails = terms[::-1].copy()
     for k in range(1, len(tails)):
         tails[k] += tails[k - 1]
     return mean, tails
 
 
 @compiled
-def _terms(speed: Array, cos: Array, sin: Array, least: float) -> ComplexArray:
+def _series(motion: Body, moment: Array, momentum: float, count: int) -> tuple[float, ComplexArray]:
+    """Mean of the precession's rate and the terms of its series, from so many samples."""
+    rate0, _, shape, quarter, _ = motion
+    work, twice_energy, mean = np.empty((11, count)), 0.0, 0.0
+    rate, angle, cos, sin, speed = work[:3], work[3], work[4], work[5], work[6]
+    for k in range(count):
+        angle[k] = 2.0 * quarter / (shape[0] * count) * k
+    _rates(angle, motion, rate)
+    for k in range(count):
+        angle[k] = 2.0 * math.pi / count * k
+    sines(angle, sin, cos)
+    for i in range(3):
+        twice_energy += moment[i] * rate0[i] ** 2
+    for k in range(count):
+        circled = abs(rate[0, k])
+        speed[k] = (twice_energy + momentum * circled) / (momentum + moment[0] * circled)
+        mean += speed[k] / count
+    return mean, _terms(speed, cos, sin, _SMALLEST_TERM * mean, work[7:])
+
+
+@compiled
+def _terms(speed: Array, cos: Array, sin: Array, least: float, work: Array) -> ComplexArray:
     """Terms of the integrated series, lowest first, down to those that are below rounding.
 
-    Sine and cosine of all harmonics go from sample to sample together.
+    Sine and cosine of all harmonics go from sample to sample together; ``work`` is room for them.
     """
     count = len(speed)
+    c, s, real, imaginary = work[0], work[1], work[2], work[3]
     room = 8 * ((count // 2 + 7) // 8)
-    c, s, real, imaginary = np.ones(room), np.zeros(room), np.zeros(room), np.zeros(room)
+    for n in range(room):
+        c[n], s[n], real[n], imaginary[n] = 1.0, 0.0, 0.0, 0.0
     for k in range(count):
         for n in range(room):
             real[n] += speed[k] * c[n]
             imaginary[n] -= speed[k] * s[n]
             ahead = c[n] * cos[n + 1] - s[n] * sin[n + 1]
-            c[n], s[n] = ahead, s[n] * cos[n + 1] + c[n] * sin[n + 1]
+            s[n] = s[n] * cos[n + 1] + c[n] * sin[n + 1]
+            c[n] = ahead
     last = count // 2
     while last > 1 and abs(real[last - 1]) + abs(imaginary[last - 1]) < least * count:
         last -= 1
@@ -191,17 +214,23 @@ def _terms(speed: Array, cos: Array, sin: Array, least: float) -> ComplexArray:
 
 
 @compiled
-def _turned(times: Array, harmonics: tuple[float, ComplexArray], period: float) -> Array:
-    """Turn about the angular momentum since the epoch (time,), rad."""
+def _half_turned(
+    times: Array, harmonics: tuple[float, ComplexArray], period: float, about: Array
+) -> None:
+    """Write half the turn about the angular momentum since the epoch, rad, in the first row."""
     mean, tails = harmonics
-    cos, sin = np.empty(len(times)), np.empty(len(times))
-    sines(math.pi / period * times, sin, cos)
-    real, imaginary = np.zeros(len(times)), np.zeros(len(times))
+    real, sin, cos, imaginary = about[0], about[1], about[2], about[3]
+    for t in range(len(times)):
+        real[t] = math.pi / period * times[t]
+    sines(real, sin, cos)
+    real[:], imaginary[:] = 0.0, 0.0
     for tail in tails:
         for t in range(len(times)):
             c, s = cos[t] * cos[t] - sin[t] * sin[t], 2.0 * sin[t] * cos[t]
             x, y = real[t], imaginary[t]
             real[t] = x * c - y * s + tail.real
             imaginary[t] = x * s + y * c + tail.imag
-    scale = period / math.pi
-    return mean * times + scale * sin * (cos * real - sin * imaginary)
+    half, scale = 0.5 * mean, 0.5 * period / math.pi
+    for t in range(len(times)):
+        waved = sin[t] * (cos[t] * real[t] - sin[t] * imaginary[t])
+        real[t] = half * times[t] + scale * waved
