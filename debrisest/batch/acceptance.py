@@ -87,8 +87,8 @@ def _by_loops(evidence: KnownPoints, arc: Arc) -> tuple[float, Array, Array, flo
     """The same by compiled loops."""
     from debrisest.batch.window_loops import offsets
 
-    times = evidence.times
-    return offsets(times, times - arc.epoch, evidence.loop_sums, arc[1:], _BLOCKS)
+    q, _ = along(arc, evidence.times)
+    return offsets(evidence.times, np.ascontiguousarray(q.T), evidence.loop_sums, _BLOCKS)
 
 
 def _blocks(evidence: Evidence) -> tuple[IntArray, Array]:

@@ -90,7 +90,8 @@ def displaced(arc: Arc, error: Array) -> Arc:
     if compiled.available() and arc.q.ndim == 1:
         from debrisest.batch import arc_loops
 
-        moved = arc_loops.displaced(*arc[1:], error.reshape(-1, UNKNOWNS))
+        errors = np.ascontiguousarray(error.reshape(-1, UNKNOWNS))
+        moved = arc_loops.displaced(*arc[1:], errors)
         return Arc(arc.epoch, *(part.reshape(*error.shape[:-1], part.shape[1]) for part in moved))
     q = quaternion.multiply(quaternion.exp(error[..., TURN]), arc.q)
     return Arc(arc.epoch, q, arc.rate + error[..., RATE], arc.log_inertia + error[..., INERTIA])

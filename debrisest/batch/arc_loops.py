@@ -40,7 +40,9 @@ def displaced(q: Array, rate: Array, logs: Array, error: Array) -> Arcs:
     q_moved, rates, ratios = np.empty((count, 4)), np.empty((count, 3)), np.empty((count, 5))
     for n in range(count):
         turn = turned_by((error[n, 0], error[n, 1], error[n, 2]))
-        q_moved[n] = multiplied(turn, (q[0], q[1], q[2], q[3]))
+        q_moved[n, 0], q_moved[n, 1], q_moved[n, 2], q_moved[n, 3] = multiplied(
+            turn, (q[0], q[1], q[2], q[3])
+        )
         for i in range(3):
             rates[n, i] = rate[i] + error[n, 3 + i]
         for i in range(5):
@@ -70,9 +72,10 @@ def derivatives(q: Array, rate: Array, step: Array) -> tuple[Array, Array]:
     for n in range(arcs):
         for t in range(times):
             turn_by[n, t, 0, 0] = turn_by[n, t, 1, 1] = turn_by[n, t, 2, 2] = 1.0
-            a, b, c, d = q[n, 0, t]
+            a, b, c, d = q[n, 0, t, 0], q[n, 0, t, 1], q[n, 0, t, 2], q[n, 0, t, 3]
             for k in range(8):
-                w, x, y, z = q[n, k + 1, t]
+                w, x = q[n, k + 1, t, 0], q[n, k + 1, t, 1]
+                y, z = q[n, k + 1, t, 2], q[n, k + 1, t, 3]
                 per = 2.0 / (step[n, k] * (w * a + x * b + y * c + z * d))
                 turn_by[n, t, 0, 3 + k] = per * (-w * b + x * a - y * d + z * c)
                 turn_by[n, t, 1, 3 + k] = per * (-w * c + x * d + y * a - z * b)
@@ -88,10 +91,11 @@ def motion(times: Array, q0: Array, rate0: Array, matrix: Array, q_if: Array, ra
     """Write attitudes (4, time) and rates (3, time) of one arc."""
     moments, to_body = _principal(matrix)
     to_f = (to_body[0], -to_body[1], -to_body[2], -to_body[3])
-    axes, rate_b = np.array(rows_of(to_body)), np.zeros(3)
-    for i in range(3):
-        for j in range(3):
-            rate_b[i] += axes[j, i] * rate0[j]
+    axes, rate_b = np.empty((3, 3)), np.zeros(3)
+    for j, row in enumerate(rows_of(to_body)):
+        for i in range(3):
+            axes[j, i] = row[i]
+            rate_b[i] += row[i] * rate0[j]
     body = body_of(rate_b, moments)
     order = body[-1]
     about = np.empty((4, len(times)))
@@ -102,13 +106,12 @@ def motion(times: Array, q0: Array, rate0: Array, matrix: Array, q_if: Array, ra
     back[1 + order[0]], back[1 + order[1]], back[1 + order[2]] = -b, -c, -d
     left = multiplied((q0[0], q0[1], q0[2], q0[3]), to_body)
     left = multiplied(left, (per * back[0], per * back[1], per * back[2], per * back[3]))
-    by[:, 0] = multiplied(left, to_f)
-    for k in range(3):
-        i = order[k]
-        unit = (0.0, 1.0 * (i == 0), 1.0 * (i == 1), 1.0 * (i == 2))
-        by[:, 1 + k] = multiplied(multiplied(left, unit), to_f)
+    for k in range(4):
+        i = order[k - 1] if k > 0 else -1
+        unit = (1.0 * (i < 0), 1.0 * (i == 0), 1.0 * (i == 1), 1.0 * (i == 2))
+        by[0, k], by[1, k], by[2, k], by[3, k] = multiplied(multiplied(left, unit), to_f)
     for i in range(4):
-        a, b, c, d = by[i]
+        a, b, c, d = by[i, 0], by[i, 1], by[i, 2], by[i, 3]
         for t in range(len(times)):
             q_if[i, t] = a * about[0, t] + b * about[1, t] + c * about[2, t] + d * about[3, t]
     for t in range(len(times)):
@@ -121,9 +124,11 @@ def motion(times: Array, q0: Array, rate0: Array, matrix: Array, q_if: Array, ra
 @compiled
 def _principal(matrix: Array) -> tuple[Array, Quaternion]:
     """Principal moments (3) and ``q_fb`` of the principal axes."""
-    moments = matrix.copy()
-    q_fb = diagonalised(moments, 1e-18)
-    return np.exp(np.diag(moments)), q_fb
+    own, moments = matrix.copy(), np.empty(3)
+    q_fb = diagonalised(own, 1e-18)
+    for i in range(3):
+        moments[i] = math.exp(own[i, i])
+    return moments, q_fb
 
 
 @compiled

@@ -89,15 +89,17 @@ def _descended(
     evidence: KnownPoints, arcs: Arc, held: Sequence[Prior], iterations: int, least_gain: float
 ) -> list[Descent]:
     """The same by compiled loops, on known points."""
-    from debrisest.batch.descent_loops import descents
+    from debrisest.batch.descent_loops import descent, epochs_of, room_of
 
-    told, settings = (evidence.times - arcs.epoch, evidence.loop_sums), for_loops(least_gain)
-    prior = np.stack([one.centre for one in held]), np.stack([one.information for one in held])
-    chi2, holds, settled = descents(*told, arcs[1:], prior, iterations, settings)
-    return [
-        Descent(chosen(arcs, k), float(chi2[k]), holds[k], bool(settled[k]))
-        for k in range(len(chi2))
-    ]
+    times, settings = evidence.times - arcs.epoch, for_loops(least_gain)
+    epochs, room, found = epochs_of(times, evidence.loop_sums), room_of(len(times)), []
+    for k, prior in enumerate(held):
+        hold, arc = np.zeros((11, 11)), chosen(arcs, k)
+        at = arc.q.copy(), arc.rate.copy(), arc.log_inertia.copy()
+        own = prior.centre, prior.information
+        chi2, settled = descent(epochs, at, own, iterations, settings, room, hold)
+        found.append(Descent(Arc(arcs.epoch, *at), chi2, hold, settled))
+    return found
 
 
 def for_loops(least_gain: float = SMALLEST_GAIN) -> tuple[float, float, float, float, float, float]:

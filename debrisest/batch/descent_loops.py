@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from debrisest.arrays import Array, BoolArray
+from debrisest.array_loops import copy, copy_rows, dot
+from debrisest.arrays import Array
 from debrisest.batch.arc_loops import Arcs, displaced, matrix_of, motion
 from debrisest.batch.known_points_loops import Sums
 from debrisest.batch.normal_loops import Work, fit, normal, room
@@ -15,30 +16,6 @@ Epochs = tuple[Array, Array, Array, float, float]
 """Times since the epoch, two sums of known points, all squares, and the longest time."""
 Room = tuple[Array, Array, Work]
 """For attitudes (9, 4, time) and rates (3, time) of an arc and eight beside it, and for a block."""
-
-
-@compiled
-def descents(
-    times: Array,
-    sums: Sums,
-    arcs: Arcs,
-    held: tuple[Array, Array],
-    iterations: int,
-    settings: Settings,
-) -> tuple[Array, Array, BoolArray]:
-    """Move the ``arcs (arc, ...)`` to where they fit best.
-
-    Return chi-squares (arc,), infinite where no body is looked for, information (arc, 11, 11) with
-    the priors, of which ``held`` are centre (arc, 5) and information (arc, 5, 5), and which arcs
-    have settled.
-    """
-    count, epochs, place = len(arcs[0]), epochs_of(times, sums), room_of(len(times))
-    chi2, holds = np.empty(count), np.empty((count, 11, 11))
-    settled = np.zeros(count, dtype=np.bool_)
-    for n in range(count):
-        arc, prior = (arcs[0][n], arcs[1][n], arcs[2][n]), (held[0][n], held[1][n])
-        chi2[n], settled[n] = descent(epochs, arc, prior, iterations, settings, place, holds[n])
-    return chi2, holds, settled
 
 
 @compiled
@@ -63,7 +40,7 @@ def costs(times: Array, sums: Sums, arcs: Arcs, settings: Settings) -> Array:
     result, squares = np.full(len(arcs[0]), np.inf), np.sum(sums[2])
     q, rates = np.empty((4, len(times))), np.empty((3, len(times)))
     for n in range(len(result)):
-        far2 = np.sum(arcs[2][n] ** 2)
+        far2 = dot(arcs[2][n], arcs[2][n])
         if np.sqrt(far2) < widest:
             motion(times, arcs[0][n], arcs[1][n], matrix_of(arcs[2][n]), q, rates)
             cost = squares - 2.0 * fit(q, sums[0]) + far2 / wide**2
@@ -81,14 +58,15 @@ def descent(
     place: Room,
     hold: Array,
 ) -> tuple[float, bool]:
-    """Move one arc, and write its information; return chi-square, and whether it has settled."""
+    """Move an arc to where it fits best; return chi-square, and whether it has settled.
+
+    Chi-square is infinite where no body is looked for. Information is written into zeros
+    (11, 11), with the priors, of which ``held`` are centre (5) and information (5, 5).
+    """
     least_gain, _, _, least, most, _ = settings
-    step, damping, scratch = (
-        np.empty((1, 11)),
-        1e-6,
-        (np.empty((11, 11)), np.empty(11), np.empty(11)),
-    )
-    pull, new_pull, new_hold = np.empty(11), np.empty(11), np.empty((11, 11))
+    step, damping = np.empty((1, 11)), 1e-6
+    scratch = np.empty((11, 11)), np.empty(11), np.empty(11)
+    pull, new_pull, new_hold = np.zeros(11), np.empty(11), np.empty((11, 11))
     chi2, lowest = _at(epochs, arc, held, settings, place, pull, hold)
     for _ in range(iterations):
         if _stepped(pull, hold, damping, step[0], scratch) < least_gain:
@@ -97,8 +75,11 @@ def descent(
         moved = ahead[0][0], ahead[1][0], ahead[2][0]
         new, total = _at(epochs, moved, held, settings, place, new_pull, new_hold)
         if total < lowest:
-            chi2, lowest, pull[:], hold[:] = new, total, new_pull, new_hold
-            arc[0][:], arc[1][:], arc[2][:] = moved
+            chi2, lowest = new, total
+            copy(new_pull, pull)
+            copy_rows(new_hold, hold)
+            for part in range(3):
+                copy(moved[part], arc[part])
             damping = max(0.1 * damping, least)
         elif damping > most:
             break
@@ -122,19 +103,17 @@ def _at(
     times, one, other, squares, longest = epochs
     q, rates, work = place
     logs = arc[2]
-    if not np.sqrt(np.sum(logs**2)) < widest:
-        pull[:], hold[:] = 0.0, 0.0
+    if not np.sqrt(dot(logs, logs)) < widest:
         return np.inf, np.inf
-    step, span = np.empty(8), 1.0 + longest
-    step[:3], step[3:] = turn / span, turn / (1.0 + np.sqrt(np.sum(arc[1] ** 2)) * span)
-    rate, log = arc[1].copy(), logs.copy()
+    step, span, rate, log = np.empty(8), 1.0 + longest, np.empty(3), np.empty(5)
+    turned = 1.0 + np.sqrt(dot(arc[1], arc[1])) * span
+    for k in range(8):
+        step[k] = turn / (span if k < 3 else turned)
     for k in range(9):
-        if k > 0:
-            rate[:], log[:] = arc[1], logs
-        if 0 < k < 4:
-            rate[k - 1] += step[k - 1]
-        elif k > 3:
-            log[k - 4] += step[k - 1]
+        for i in range(3):
+            rate[i] = arc[1][i] + (step[i] if i == k - 1 else 0.0)
+        for i in range(5):
+            log[i] = logs[i] + (step[3 + i] if i == k - 4 else 0.0)
         motion(times, arc[0], rate, matrix_of(log), q[k], rates)
     chi2 = squares - 2.0 * normal(q, step, (one, other), work, pull, hold)
     total = chi2

@@ -7,6 +7,7 @@ The formulas are those of `free_points`, `align_clouds` and `point_sums`, where 
 
 import numpy as np
 
+from debrisest.array_loops import fill, fill_rows
 from debrisest.arrays import Array
 from debrisest.attitude.nearest_loops import nearest
 from debrisest.attitude.rotation_loops import Vector, inner, rows_of
@@ -26,14 +27,15 @@ def attitudes(points: Array, weight: Array, model: Array) -> Array:
     for t in range(len(points)):
         _centre(points[t], weight[t], measured)
         _centre(model, weight[t], body)
-        product[:], spread[:] = 0.0, 0.0
+        fill_rows(0.0, product)
+        fill_rows(0.0, spread)
         for n in range(len(model)):
             for i in range(3):
                 for j in range(3):
                     product[i, j] += weight[t, n] * measured[n, i] * body[n, j]
                     spread[i, j] += weight[t, n] * body[n, i] * body[n, j]
         if _tells(spread):
-            q[t] = nearest(product, davenport, adjugate)
+            q[t, 0], q[t, 1], q[t, 2], q[t, 3] = nearest(product, davenport, adjugate)
     return q
 
 
@@ -105,7 +107,7 @@ def normal(
 @compiled
 def _spend(inverse: Array, cross: Array, own: Array, hold: Array, moved: Array) -> None:
     """Take from the information (11, 11) what the place of a point takes; ``moved`` is scratch."""
-    moved[:] = 0.0
+    fill_rows(0.0, moved)
     for n in range(len(inverse)):
         for i in range(3):
             for a in range(11):
@@ -143,13 +145,15 @@ def _at_rest(
     ``cross`` is the information (feature, 3, 11) between places and unknowns.
     """
     chi2, turned = 0.0, np.empty((3, 11))
-    cross[:] = 0.0
+    for n in range(len(cross)):
+        fill_rows(0.0, cross[n])
     measured, body = np.empty(model.shape), np.empty(model.shape)
     pull, hold = np.empty(3), np.empty((3, 3))
     for t in range(len(points)):
         _centre(points[t], weight[t], measured)
         _centre(model, weight[t], body)
-        pull[:], hold[:] = 0.0, 0.0
+        fill(0.0, pull)
+        fill_rows(0.0, hold)
         chi2 += _tell(measured, body, weight[t], q[t], pull, hold)
         by = turn_by[t]
         _multiplied(hold, by, turned)
@@ -158,7 +162,9 @@ def _at_rest(
             for b in range(11):
                 more = by[0, a] * turned[0, b] + by[1, a] * turned[1, b] + by[2, a] * turned[2, b]
                 holds[a, b] += more
-        hold[0], hold[1], hold[2] = _columns(q[t])
+        for i, row in enumerate(_columns(q[t])):
+            for j in range(3):
+                hold[i, j] = row[j]
         _multiplied(hold, by, turned)
         for n in range(len(model)):
             w, (x, y, z) = weight[t, n], _vector(body, n)
@@ -234,6 +240,6 @@ def _vector(vectors: Array, n: int) -> Vector:
 def _multiplied(matrix: Array, by: Array, result: Array) -> None:
     """Write the product (3, 11) of a matrix (3, 3) with another."""
     for i in range(3):
-        x, y, z = matrix[i]
+        x, y, z = _vector(matrix, i)
         for a in range(by.shape[1]):
             result[i, a] = x * by[0, a] + y * by[1, a] + z * by[2, a]

@@ -5,6 +5,7 @@ Formulas are those of `point_sums`, where their words are.
 
 import numpy as np
 
+from debrisest.array_loops import dot, fill
 from debrisest.arrays import Array
 from debrisest.attitude.rotation_loops import Vector, inner, rows_of
 from debrisest.compiled import compiled
@@ -118,10 +119,11 @@ def sums(points: Points, weight: Array) -> Sums:
     times, features = weight.shape
     product, hold = np.zeros((9, times)), np.zeros((6, times))
     squared, dof = np.zeros(times), np.empty(times)
-    z, f = np.empty(3), np.empty(3)
+    z, f, mean, place = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for t in range(times):
         total, count, even = 0.0, 0, 0.0
-        mean, place = np.zeros(3), np.zeros(3)
+        fill(0.0, mean)
+        fill(0.0, place)
         for n in range(features):
             total += weight[t, n]
             count += weight[t, n] > 0.0
@@ -137,13 +139,13 @@ def sums(points: Points, weight: Array) -> Sums:
             for i in range(3):
                 for j in range(3):
                     product[3 * i + j, t] += per * z[i] * f[j]
-            a, b, c = f
+            a, b, c = f[0], f[1], f[2]
             hold[0, t] += per * (b * b + c * c)
             hold[1, t] -= per * a * b
             hold[2, t] -= per * a * c
             hold[3, t] += per * (a * a + c * c)
             hold[4, t] -= per * b * c
             hold[5, t] += per * (a * a + b * b)
-            squared[t] += per * (np.sum(z**2) + a * a + b * b + c * c)
+            squared[t] += per * (dot(z, z) + a * a + b * b + c * c)
         dof[t] = 3.0 * (even - even / max(count, 1))
     return product, hold, squared, dof

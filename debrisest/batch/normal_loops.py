@@ -5,6 +5,7 @@ Epochs go in blocks whose numbers are vectors: what an epoch says stands in the 
 
 import numpy as np
 
+from debrisest.array_loops import copy, fill, fill_rows
 from debrisest.arrays import Array
 from debrisest.attitude.rotation_loops import Quaternion, Vector, inner, rows_of
 from debrisest.compiled import compiled, compiled_sum
@@ -31,18 +32,19 @@ def normal(
     """
     by, turned, push = work
     fit, times = 0.0, q.shape[2]
-    pull[:], information[:] = 0.0, 0.0
+    fill(0.0, pull)
+    fill_rows(0.0, information)
     for i in range(3):
-        by[i] = 0.0
-        by[i, i] = 1.0
+        for j in range(3):
+            fill(1.0 if i == j else 0.0, by[i, j])
     for first in range(0, times, _BLOCK):
         count = min(_BLOCK, times - first)
         _derivatives(q, first, count, step, by)
         fit += _weighed(q[0], first, count, told, work)
         for a in range(11):
-            pull[a] += _product(by[a].reshape(-1), push.reshape(-1))
+            pull[a] += _product(by[a], push)
             for b in range(a + 1):
-                information[a, b] += _product(by[a].reshape(-1), turned[b].reshape(-1))
+                information[a, b] += _product(by[a], turned[b])
     for a in range(11):
         for b in range(a):
             information[b, a] = information[a, b]
@@ -63,8 +65,9 @@ def fit(q: Array, product: Array) -> float:
 @compiled_sum
 def _product(one: Array, other: Array) -> float:
     total = 0.0
-    for k in range(len(one)):
-        total += one[k] * other[k]
+    for i in range(3):
+        for k in range(_BLOCK):
+            total += one[i, k] * other[i, k]
     return total
 
 
@@ -86,14 +89,19 @@ def _derivatives(q: Array, first: int, count: int, step: Array, by: Array) -> No
 def _weighed(q: Array, first: int, count: int, told: tuple[Array, Array], work: Work) -> float:
     """Write pull, and information times derivatives, which are zero behind the last epoch."""
     by, turned, push = work
-    fits = np.empty(count)
-    turned[:, :, count:], push[:, count:] = 0.0, 0.0
+    fits, total = np.empty(count), 0.0
+    for i in range(3):
+        fill(0.0, push[i, count:])
+        for k in range(11):
+            fill(0.0, turned[k, i, count:])
     hold = turned[0, 0], turned[0, 1], turned[0, 2], turned[1, 1], turned[1, 2], turned[2, 2]
     for t in range(count):
         fits[t], pulled, ((a, b, c), (d, e, f)) = said(told, rows_of(at(q, first + t)), first + t)
         push[0, t], push[1, t], push[2, t] = pulled
         hold[0][t], hold[1][t], hold[2][t], hold[3][t], hold[4][t], hold[5][t] = a, b, c, d, e, f
-    turned[1, 0], turned[2, 0], turned[2, 1] = turned[0, 1], turned[0, 2], turned[1, 2]
+    for i in range(3):
+        for k in range(i):
+            copy(turned[k, i], turned[i, k])
     for k in range(3, 11):
         one, other = by[k], turned[k]
         for t in range(count):
@@ -101,7 +109,9 @@ def _weighed(q: Array, first: int, count: int, told: tuple[Array, Array], work: 
             other[0, t] = inner((hold[0][t], hold[1][t], hold[2][t]), row)
             other[1, t] = inner((hold[1][t], hold[3][t], hold[4][t]), row)
             other[2, t] = inner((hold[2][t], hold[4][t], hold[5][t]), row)
-    return np.sum(fits)
+    for t in range(count):
+        total += fits[t]
+    return total
 
 
 @compiled

@@ -69,7 +69,8 @@ def _by_loops(arc: Arc, spread: Spread, times: Array) -> tuple[Array, Array, Arr
     """The same by compiled loops."""
     from debrisest.batch.path_loops import path
 
-    return path(times - arc.epoch, *spread.for_loops(arc))
+    q, rate, joint = path(times - arc.epoch, *spread.for_loops(arc))
+    return np.ascontiguousarray(q.T), np.ascontiguousarray(rate.T), joint
 
 
 def unknown_path(times: Array) -> Path:

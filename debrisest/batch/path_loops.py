@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from debrisest.array_loops import fill
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude.rotation_loops import multiplied
 from debrisest.batch.arc_loops import Arcs, matrix_of, motion
@@ -19,7 +20,7 @@ _ARCSINE = tuple(1.0 / (2 * n + 1) * math.comb(2 * n, n) / 4**n for n in range(1
 
 @compiled
 def path(times: Array, arcs: Arcs, far: Array, parts: IntArray) -> tuple[Array, Array, Array]:
-    """Return ``q_if (time, 4)``, rates (time, 3), and the joint covariance (time, 11, 11).
+    """Return ``q_if (4, time)``, rates (3, time), and the joint covariance (time, 11, 11).
 
     Of ``arcs (arc, ...)`` the first is the motion; behind it come those of each part, all ahead,
     then all behind, ``far (arc,)`` sigmas away; ``parts (5,)`` have so many axes. Times count from
@@ -50,8 +51,9 @@ def path(times: Array, arcs: Arcs, far: Array, parts: IntArray) -> tuple[Array, 
                     weight * (7.0 - 2.0 * part) * (1 if ahead else -1),
                 )
             _add(ways[0][axis], weight, error, rate_side, rate)
-            ways[1][axis] += weight * (arcs[2][arc] - arcs[2][0])
-    return q.T.copy(), rate.T.copy(), _joint(ways[0], ways[1])
+            for i in range(5):
+                ways[1][axis, i] += weight * (arcs[2][arc, i] - arcs[2][0, i])
+    return q, rate, _joint(ways[0], ways[1])
 
 
 @compiled
@@ -95,7 +97,11 @@ def _add(way: Array, weight: float, turn: Array, rate: Array, middle: Array) -> 
 def _joint(ways: Array, constant: Array) -> Array:
     """Sum (time, 11, 11) of the squares of all ways, of which five numbers are constant."""
     count = ways.shape[2]
-    joint, sums, same = np.empty((count, 11, 11)), np.zeros((11, 11, _BLOCK)), constant.T @ constant
+    joint, sums, same = np.empty((count, 11, 11)), np.zeros((11, 11, _BLOCK)), np.zeros((5, 5))
+    for way in range(len(ways)):
+        for a in range(5):
+            for b in range(5):
+                same[a, b] += constant[way, a] * constant[way, b]
     part = np.zeros((len(ways), 6, _BLOCK))
     for first in range(0, count, _BLOCK):
         size = min(_BLOCK, count - first)
@@ -106,7 +112,7 @@ def _joint(ways: Array, constant: Array) -> Array:
         for a in range(11):
             for b in range(a + 1):
                 total = sums[a, b]
-                total[:] = same[a - 6, b - 6] if b > 5 else 0.0
+                fill(same[a - 6, b - 6] if b > 5 else 0.0, total)
                 for way in range(0, len(ways) if b < 6 else 0, 4):
                     if a < 6:
                         _squares(part, way, a, b, total)

@@ -7,8 +7,10 @@ import math
 
 import numpy as np
 
+from debrisest.array_loops import fill
 from debrisest.arrays import Array, BoolArray
 from debrisest.compiled import compiled
+from debrisest.order_loops import quantile
 
 
 @compiled
@@ -32,8 +34,10 @@ def pairs(
                     count += 1
             common[i, j] = common[j, i] = count
             if count >= fewest:
-                middle = given[i, j] if len(given) else np.median(far[:count])
-                off = np.median(np.abs(far[:count] - middle))
+                middle = given[i, j] if len(given) else quantile(far[:count], 0.5)
+                for t in range(count):
+                    far[t] = abs(far[t] - middle)
+                off = quantile(far[:count], 0.5)
                 length[i, j] = length[j, i] = middle
                 noise[i, j] = noise[j, i] = scale * off
     return length, noise, common
@@ -77,7 +81,9 @@ def odd_points(points: Array, seen: BoolArray, length: Array, limit: float) -> B
     asked, agreed = np.empty(features), np.empty(features)
     for t in range(times):
         for _ in range(2):
-            asked[:], agreed[:], more = 0.0, 0.0, False
+            fill(0.0, asked)
+            fill(0.0, agreed)
+            more = False
             for i in range(features):
                 for j in range(i + 1, features):
                     both = seen[t, i] and seen[t, j] and not (odd[t, i] or odd[t, j])

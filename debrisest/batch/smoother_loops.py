@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from debrisest.array_loops import copy, copy_rows, dot, multiply
 from debrisest.arrays import Array, IntArray
 from debrisest.attitude.rotation_loops import (
     Quaternion,
@@ -20,7 +21,7 @@ from debrisest.attitude.rotation_loops import (
 from debrisest.batch.known_points_loops import Sums
 from debrisest.batch.normal_loops import said
 from debrisest.compiled import compiled
-from debrisest.linear_algebra_loops import solve
+from debrisest.linear_algebra_loops import mirror, solve
 
 Clock = tuple[Array, IntArray]
 """Steps before each time, s, and the epoch that is measured there, -1 if none."""
@@ -35,18 +36,18 @@ def likelihoods(clock: Clock, sums: Sums, start: State, intensity: Array) -> tup
     """Return misfit and volume (intensity,) of filters with several intensities."""
     misfit, volume = np.zeros(len(intensity)), np.zeros(len(intensity))
     n = len(start[2])
-    transition, taylor, noise = np.eye(n), np.eye(n // 3), np.zeros((n // 3, n // 3))
-    for copy in range(len(intensity)):
+    transition, taylor, noise = np.eye(n), np.empty((n // 3, n // 3)), np.empty((n // 3, n // 3))
+    for one in range(len(intensity)):
         state, last = (start[0].copy(), start[1].copy(), start[2].copy()), -1.0
         for k in range(len(clock[0])):
             if clock[0][k] != last:
                 last = clock[0][k]
                 _chain(last, taylor, noise)
-            _predict(state, taylor, noise, intensity[copy], transition)
+            _predict(state, taylor, noise, intensity[one], transition)
             if clock[1][k] >= 0:
                 more, wider = _update(state, sums, clock[1][k])
-                misfit[copy] += more
-                volume[copy] += wider
+                misfit[one] += more
+                volume[one] += wider
     return misfit, volume
 
 
@@ -56,24 +57,32 @@ def smoothed(
 ) -> tuple[Array, Array, Array]:
     """Return attitudes (time, 4), motions (time, 3 or 6) and covariances (time, n, n)."""
     times, n = len(clock[0]), len(start[2])
-    taylor, noise = np.eye(n // 3), np.zeros((n // 3, n // 3))
+    taylor, noise = np.empty((n // 3, n // 3)), np.empty((n // 3, n // 3))
     q, motion, spread = np.empty((times, 4)), np.empty((times, n - 3)), np.empty((times, n, n))
     ahead = np.empty((times, 4)), np.empty((times, n - 3)), np.empty((times, n, n))
-    transition = np.empty((times, n, n))
+    transition = np.zeros((times, n, n))
     state = start[0].copy(), start[1].copy(), start[2].copy()
     for k in range(times):
         _chain(clock[0][k], taylor, noise)
-        transition[k] = np.eye(n)
+        for i in range(n):
+            transition[k, i, i] = 1.0
         _predict(state, taylor, noise, intensity, transition[k])
-        ahead[0][k], ahead[1][k], ahead[2][k] = state
+        _keep(state, (ahead[0][k], ahead[1][k], ahead[2][k]))
         if clock[1][k] >= 0:
             _update(state, sums, clock[1][k])
-        q[k], motion[k], spread[k] = state
+        _keep(state, (q[k], motion[k], spread[k]))
     for k in range(times - 2, -1, -1):
         predicted = ahead[0][k + 1], ahead[1][k + 1], ahead[2][k + 1]
         after = q[k + 1], motion[k + 1], spread[k + 1]
         _back((q[k], motion[k], spread[k]), predicted, after, transition[k + 1])
     return q, motion, spread
+
+
+@compiled
+def _keep(state: State, to: State) -> None:
+    copy(state[0], to[0])
+    copy(state[1], to[1])
+    copy_rows(state[2], to[2])
 
 
 @compiled
@@ -102,7 +111,7 @@ def _predict(
         z += taylor[0, 1 + i] * motion[3 * i + 2]
     before = (q[0], q[1], q[2], q[3])
     rows = rows_of(multiplied(before, turned_by((0.5 * x, 0.5 * y, 0.5 * z))))
-    q[:] = multiplied(before, turned_by((x, y, z)))
+    q[0], q[1], q[2], q[3] = multiplied(before, turned_by((x, y, z)))
     for i in range(order - 1):
         for a in range(3):
             motion[3 * i + a] = _onward(taylor, motion, i, a)
@@ -153,7 +162,8 @@ def _update(state: State, sums: Sums, epoch: int) -> tuple[float, float]:
     for update in range(_UPDATES):
         at = multiplied(turned_by((error[0], error[1], error[2])), before)
         fit, pull, ((a, b, c), (d, e, f)) = said((sums[0], sums[1]), rows_of(at), epoch)
-        hold[0], hold[1], hold[2] = (a, b, c), (b, d, e), (c, e, f)
+        hold[0, 0], hold[0, 1], hold[0, 2], hold[1, 1], hold[1, 2], hold[2, 2] = a, b, c, d, e, f
+        mirror(hold)
         size = _gain(spread, hold, gain)
         off = (error[0], error[1], error[2])
         pulled = (
@@ -167,10 +177,12 @@ def _update(state: State, sums: Sums, epoch: int) -> tuple[float, float]:
             misfit = sums[2][epoch] - 2.0 * fit - inner(pull, (error[0], error[1], error[2]))
             misfit = misfit if size > 0.0 else np.inf
             volume = math.log(size) if size > 0.0 else 0.0
-    q[:] = multiplied(turned_by((error[0], error[1], error[2])), before)
+    q[0], q[1], q[2], q[3] = multiplied(turned_by((error[0], error[1], error[2])), before)
     for k in range(n - 3):
         motion[k] += error[3 + k]
-    taken = gain @ hold @ np.ascontiguousarray(spread[:, :3]).T
+    weighed, taken = np.empty((n, 3)), np.empty((n, n))
+    multiply(gain, hold, weighed)
+    multiply(weighed, spread[:3], taken)
     for i in range(n):
         for j in range(i + 1):
             both = spread[i, j] - taken[i, j] + spread[j, i] - taken[j, i]
@@ -189,13 +201,14 @@ def _gain(spread: Array, hold: Array, gain: Array) -> float:
         for j in range(3):
             for k in range(3):
                 wider[i, j] += hold[i, k] * spread[k, j]
-    inverse = np.empty((3, 3))
+    inverse, sound = np.empty((3, 3)), True
     for i in range(3):
         for j in range(3):
+            sound = sound and np.isfinite(wider[i, j])
             k, m, r, s = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
             inverse[j, i] = wider[k, r] * wider[m, s] - wider[k, s] * wider[m, r]
     size = wider[0, 0] * inverse[0, 0] + wider[0, 1] * inverse[1, 0] + wider[0, 2] * inverse[2, 0]
-    sound = np.isfinite(wider).all() and np.isfinite(size) and size != 0.0
+    sound = sound and np.isfinite(size) and size != 0.0
     for a in range(len(spread)):
         for j in range(3):
             gain[a, j] = spread[a, j]
@@ -209,22 +222,40 @@ def _gain(spread: Array, hold: Array, gain: Array) -> float:
 def _back(state: State, ahead: State, after: State, transition: Array) -> None:
     """Move a filtered state and its covariance to what all measurements say."""
     q, motion, spread = state
-    n, scale = len(spread), np.sqrt(np.diag(ahead[2]))
-    gain, column = np.empty((n, n)), np.empty(n)
-    across = transition @ spread
+    n = len(spread)
+    scale, error, column = np.empty(n), np.empty(n), np.empty(n)
+    matrix, gain, half, more = (
+        np.empty((n, n)),
+        np.empty((n, n)),
+        np.empty((n, n)),
+        np.empty((n, n)),
+    )
+    multiply(transition, spread, half)
     for i in range(n):
-        matrix = ahead[2] / np.outer(scale, scale)
-        column[:] = across[:, i] / scale
+        scale[i] = math.sqrt(ahead[2][i, i])
+    for i in range(n):
+        for a in range(n):
+            column[a] = half[a, i] / scale[a]
+            for b in range(n):
+                matrix[a, b] = ahead[2][a, b] / (scale[a] * scale[b])
         solve(matrix, column)
-        gain[i] = column / scale
-    turn = turn_of(multiplied(_four(after[0]), conjugated(_four(ahead[0]))))
-    error = np.empty(n)
-    error[0], error[1], error[2] = turn
-    error[3:] = after[1] - ahead[1]
-    moved = gain @ error
-    q[:] = multiplied(turned_by((moved[0], moved[1], moved[2])), _four(q))
-    motion += moved[3:]
-    spread += gain @ (after[2] - ahead[2]) @ gain.T
+        for a in range(n):
+            gain[i, a] = column[a] / scale[a]
+    error[0], error[1], error[2] = turn_of(multiplied(_four(after[0]), conjugated(_four(ahead[0]))))
+    for i in range(n - 3):
+        error[3 + i] = after[1][i] - ahead[1][i]
+    for i in range(n):
+        column[i] = dot(gain[i], error)
+        for j in range(n):
+            more[i, j] = after[2][i, j] - ahead[2][i, j]
+    turn = turned_by((column[0], column[1], column[2]))
+    q[0], q[1], q[2], q[3] = multiplied(turn, _four(q))
+    for i in range(n - 3):
+        motion[i] += column[3 + i]
+    multiply(gain, more, half)
+    for i in range(n):
+        for j in range(n):
+            spread[i, j] += dot(half[i], gain[j])
 
 
 @compiled

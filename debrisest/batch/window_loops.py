@@ -5,6 +5,7 @@ The steps are those of `windows` and `acceptance`, where their words are.
 
 import numpy as np
 
+from debrisest.array_loops import differ
 from debrisest.arrays import Array
 from debrisest.attitude.rotation_loops import Vector, rows_of
 from debrisest.batch.arc_loops import Arcs, diagonalised, matrix_of, motion
@@ -12,6 +13,7 @@ from debrisest.batch.descent_loops import Settings, descent, epochs_of, room_of
 from debrisest.batch.known_points_loops import Points, Sums, gated, squares, sums
 from debrisest.batch.normal_loops import at, said
 from debrisest.compiled import compiled
+from debrisest.order_loops import quantile
 
 Gates = tuple[float, int, float, float, float]
 """Limit, rounds, share of squares that are tame, how many times these are wild, and the median
@@ -36,8 +38,8 @@ def fitted(
     count from the arc's epoch.
     """
     gate, rounds, _, _, _ = gates
-    place, hold = room_of(len(times)), np.empty((11, 11))
-    q, square, kept, dof = place[0][0], np.empty(weight.shape), weight, np.zeros(0)
+    place, hold = room_of(len(times)), np.zeros((11, 11))
+    q, square, kept, dof = place[0][0], np.empty(weight.shape), weight, times
     chi2, settled = np.inf, False
     for turn in range(rounds + 1):
         motion(times, arc[0], arc[1], matrix_of(arc[2]), q, place[1])
@@ -45,7 +47,7 @@ def fitted(
         limit = _limit(square, gates, turn == 0)
         trial = gated(points, weight, q, square, limit)
         told = sums(points, trial)
-        if turn > 0 and limit == gate and np.array_equal(told[3], dof):
+        if turn > 0 and limit == gate and differ(told[3], dof) == 0:
             break
         kept, dof, epochs = trial, told[3], epochs_of(times, told)
         chi2, settled = descent(epochs, arc, held, iterations, settings, place, hold)
@@ -56,34 +58,36 @@ def fitted(
 def _limit(square: Array, gates: Gates, first: bool) -> float:
     """Limit of squares: of a prediction by how it fits, else wider where outliers have drawn it."""
     gate, _, tame, share, usual = gates
+    seen, count, finite, below, largest = np.empty(square.size), 0, 0, 0, 0.0
+    for row in range(len(square)):
+        for value in square[row]:
+            if not np.isnan(value):
+                seen[count] = value
+                count += 1
+                finite += np.isfinite(value)
+                below += value <= usual
+                largest = max(largest, value)
     if first:
-        largest = np.nanmax(square) if np.isfinite(square).any() else 0.0
-        return gate + share * np.nanquantile(square, tame) if largest > gate else gate
-    below, seen = 0, 0
-    for value in square.flat:
-        seen += 1 if np.isfinite(value) else 0
-        below += 1 if value <= usual else 0
-    return gate if 2 * below > seen else gate * max(1.0, np.nanmedian(square) / usual)
+        return gate + share * quantile(seen[:count], tame) if largest > gate else gate
+    return gate if 2 * below > finite else gate * max(1.0, quantile(seen[:count], 0.5) / usual)
 
 
 @compiled
-def offsets(
-    clock: Array, times: Array, sums: Sums, arc: Arcs, most: int
-) -> tuple[float, Array, Array, float]:
+def offsets(clock: Array, q: Array, sums: Sums, most: int) -> tuple[float, Array, Array, float]:
     """Return chi-square, that of the blocks' mean offsets (2, block), limits, s, and all dof.
 
-    Offsets in inertial axes, then in those of the body; at most so many blocks. ``times`` count
-    from the arc's epoch.
+    Of attitudes ``q (4, time)``. Offsets in inertial axes, then in those of the body; at most so
+    many blocks.
     """
     product, hold, squared, dof = sums
-    q, rates = np.empty((4, len(times))), np.empty((3, len(times)))
-    motion(times, arc[0], arc[1], matrix_of(arc[2]), q, rates)
-    count, whole = min(most, max(len(times) // 3, 1)), max(np.sum(dof), 1.0)
+    count, whole = min(most, max(len(clock) // 3, 1)), 0.0
+    for told in dof:
+        whole += told
     pull, information = np.zeros((2, count, 3)), np.zeros((2, count, 3, 3))
     chi2, share, ends, last = 0.0, 0.0, np.full(count + 1, clock[-1]), -1
-    for t in range(len(times)):
+    for t in range(len(clock)):
         share += dof[t]
-        block = min(int(share / whole * count * (1.0 - 1e-12)), count - 1)
+        block = min(int(share / max(whole, 1.0) * count * (1.0 - 1e-12)), count - 1)
         for k in range(last + 1, block + 1):
             ends[k] = clock[t]
         last = max(last, block)
@@ -101,7 +105,7 @@ def offsets(
     for k in range(last + 1):
         for n in range(2):
             values[n, k] = _quadratic(information[n, k], pull[n, k])
-    return chi2, values, ends, np.sum(dof)
+    return chi2, values, ends, whole
 
 
 @compiled

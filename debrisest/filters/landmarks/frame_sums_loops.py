@@ -5,6 +5,7 @@ The formulas are those of `frame_sums.sums`, where their words are.
 
 import numpy as np
 
+from debrisest.array_loops import fill, fill_rows
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.compiled import compiled
 
@@ -44,14 +45,15 @@ def sums(
     used = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most), np.empty(most)
     for run in range(runs):
         figures = (costs[run], counts[run], landmarks[run])
-        across[:] = 0.0
+        fill_rows(0.0, across)
         for k in range(frames):
             measured, shown = seen[0][run, k], rows[0][run, k]
             by_core, by_point = rows[1][run, k], rows[2][run, k]
             count = _sightings(
                 shown, measured, seen[1][run, k], placed[run], noise[0], limits, used, figures
             )
-            own[:], crossed[:] = 0.0, 0.0
+            fill_rows(0.0, own)
+            fill_rows(0.0, crossed)
             _products(by_core, by_point, used, count, own, crossed, information[run], gradient[run])
             common = (rows[3][run, k], rows[4][run, k], seen[2][run, k])
             _common(common, seen[3][run, k], noise[1], limits, own, figures)
@@ -196,7 +198,7 @@ def _by_start(
 ) -> None:
     """Add a frame's sums by its own core as those by the start's parameters."""
     s, n_x = by_start.shape
-    half[:] = 0.0
+    fill_rows(0.0, half)
     for a in range(s):
         for b in range(s):
             x = own[min(a, b), max(a, b)]
@@ -225,7 +227,9 @@ def _shared(
 ) -> None:
     """Write the squares (c, c) of the noise that rows share, and its products with them."""
     total, right = shared
-    total[:], right[:], s = 0.0, 0.0, by_core.shape[2]
+    fill_rows(0.0, total)
+    fill_rows(0.0, right)
+    s = by_core.shape[2]
     for q in range(count):
         p, i, scale = used[0][q], used[1][q], used[2][q]
         for c in range(len(total)):
@@ -261,7 +265,8 @@ def _without_shared(
             for d in range(c):
                 right[c, a] -= shared[c, d] * right[d, a]
             right[c, a] /= shared[c, c]
-        row[:n_x], seen = 0.0, right[c, -1]
+        fill(0.0, row)
+        seen = right[c, -1]
         for a in range(n_x, n):
             row[a] = right[c, s + a - n_x]
         for a in range(s):

@@ -7,6 +7,7 @@ a step needs no gain: with the factor L of the innovations' covariance ``S = L L
 
 import numpy as np
 
+from debrisest.array_loops import fill, fill_rows
 from debrisest.arrays import Array, BoolArray, IntArray
 from debrisest.compiled import compiled
 
@@ -57,7 +58,7 @@ def step(
         else:
             _relative(derivative, owners, count, shown_by, correction[run], tableau)
         _whiten(tableau, count, n)
-        whitened[run, count:] = 0.0
+        fill_rows(0.0, whitened[run, count:])
         for q in range(count):
             squares[run] += tableau[q, -1] ** 2
             for a in range(n):
@@ -100,7 +101,7 @@ def _lines(
                 count += 1
     for i in range(common.shape[2]):
         if used[points * each + i]:
-            derivative[count] = 0.0
+            fill(0.0, derivative[count])
             for a in range(s):
                 derivative[count, a] = common_by_core[run, 0, i, a]
             owners[count], components[count] = -1, points * each + i
@@ -121,7 +122,7 @@ def _spread(
     """Write ``H P (count, n_e)``, three errors at a time."""
     n, s = len(covariance), len(shown_by)
     for q in range(count):
-        tableau[q, :n] = 0.0
+        fill(0.0, tableau[q, :n])
         for a in range(0, s - 2, 3):
             x, y, z = derivative[q, a], derivative[q, a + 1], derivative[q, a + 2]
             i, j, k = shown_by[a], shown_by[a + 1], shown_by[a + 2]
@@ -152,7 +153,7 @@ def _total(
     """Write the upper triangle of the innovations' covariance."""
     s = len(shown_by)
     for q in range(count):
-        tableau[q, n : n + q] = 0.0
+        fill(0.0, tableau[q, n : n + q])
         for r in range(q, count):
             value, owner = 0.0, owners[r]
             for a in range(s):
@@ -266,7 +267,8 @@ def _whiten(tableau: Array, count: int, n: int) -> None:
 @compiled
 def _sums(tableau: Array, count: int, left: Array, new: Array) -> None:
     """Write by how much variances (n_e) shrink, and the correction (n_e)."""
-    left[:], new[:] = 0.0, 0.0
+    fill(0.0, left)
+    fill(0.0, new)
     for q in range(count):
         innovation = tableau[q, -1]
         for a in range(len(new)):

@@ -5,6 +5,7 @@ Matrices are those of `chart` and of `replay.transition`, where their words are.
 
 import numpy as np
 
+from debrisest.array_loops import copy_rows, fill_rows
 from debrisest.arrays import Array
 from debrisest.attitude.vector_loops import vector
 from debrisest.compiled import compiled
@@ -25,7 +26,7 @@ def carried(
     turn, arms, between = np.empty((3, 3)), np.empty((points + 1, 3)), np.empty((6, n_e))
     for run in range(len(before)):
         turned_back(turning[run], unturned)
-        matrix[:] = information[run]
+        copy_rows(information[run], matrix)
         for _ in range(2):
             if not plain:
                 place(before[run], turn, arms)
@@ -33,9 +34,10 @@ def carried(
             moved_back(unturned, back, matrix, between)
             place(after[run], turn, arms)
             by_own(vector(after[run, 6:]), turn, arms, matrix, between)
-            result[run] = matrix
-            matrix[:] = result[run].T
-        result[run] = matrix
+            for a in range(n_e):
+                for b in range(n_e):
+                    result[run, b, a] = matrix[a, b]
+            copy_rows(result[run], matrix)
     return result
 
 
@@ -45,7 +47,7 @@ def turned_back(turning: Array, result: Array) -> None:
 
     The last two of these are what the ratios take off.
     """
-    result[:] = 0.0
+    fill_rows(0.0, result)
     for a in range(6):
         for b in range(6):
             result[a, b] = turning[a, b]
@@ -70,7 +72,7 @@ def moved_back(unturned: Array, back: Array, matrix: Array, between: Array) -> N
     """Multiply the rows of a matrix (n_e, n_e) by a transposed inverse transition, in place."""
     for first in range(0, 12, 6):
         of, start = (back, 0) if first == 0 else (unturned, 6)
-        between[:] = matrix[first : first + 6]
+        copy_rows(matrix[first : first + 6], between)
         for a in range(6 if first == 0 else 8):
             p, q, r = of[0, start + a], of[1, start + a], of[2, start + a]
             x, y, z = of[3, start + a], of[4, start + a], of[5, start + a]

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from debrisest.array_loops import copy, fill
 from debrisest.arrays import Array
 from debrisest.attitude.vector_loops import Vector, applied, applied_back, cross, vector
 from debrisest.compiled import compiled
@@ -21,7 +22,7 @@ def place(state: Array, turn: Array, arms: Array) -> None:
     """Write the axes (3, 3) of a state (n,), and the arms (N + 1, 3), their mean the last."""
     points = len(arms) - 1
     axes(state[9:13], turn)
-    arms[points] = 0.0
+    fill(0.0, arms[points])
     for i in range(points):
         arm = applied(turn, vector(state[15 + 3 * i :]))
         for c in range(3):
@@ -175,7 +176,7 @@ def moved(state: Array, step: Array) -> Array:
 def to_own(rate: Vector, turn: Array, arms: Array, step: Array, error: Array) -> None:
     """Write a plain error (n_e,) in the chart of its own: ``G d`` of `chart.robocentric`."""
     points, turned = len(arms) - 1, vector(step[9:])
-    error[:14] = step[:14]
+    copy(step[:14], error)
     mean = cross(turned, vector(arms[points]))
     for i in range(points):
         body = applied(turn, vector(step[14 + 3 * i :]))

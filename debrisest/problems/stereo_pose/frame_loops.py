@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from debrisest.array_loops import copy, copy_rows, dot, fill, fill_rows
 from debrisest.arrays import Array
 from debrisest.attitude.vector_loops import Vector, cross, less, vector
 from debrisest.compiled import compiled
@@ -49,23 +50,24 @@ def updated(
         own, at = information[run], state[run].copy()
         place(at, turn, arms)
         if gate:
-            work[:] = own
+            copy_rows(own, work)
             factor(work)
             factor_inverse(work, total)
             _judge(at, turn, arms, camera, spin, total, measured[run], weight[run])
         for _ in range(limits[0]):
             place(at, turn, at_arms)
             difference(state[run], arms, at, at_arms, offset)
-            pull[:] = 0.0
+            fill(0.0, pull)
             for a in range(n_e):
                 for b in range(n_e):
                     pull[b] += offset[a] * own[a, b]
-            total[:] = own
-            step[:] = pull
+            copy_rows(own, total)
+            copy(pull, step)
             seen = measured[run], weight[run]
             nis[run] = _add_frame(at, turn, at_arms, camera, spin, seen, sums, total, step)
             nis[run] += dot(offset, pull)
-            pull[:], work[:] = step, total
+            copy(step, pull)
+            copy_rows(total, work)
             factor(work)
             factor_solve(work, step)
             decrement = dot(step, pull)
@@ -74,7 +76,8 @@ def updated(
             if decrement < limits[1]:
                 break
         mirror(total)
-        own[:], state[run] = total, at
+        copy_rows(total, own)
+        copy(at, state[run])
     return nis
 
 
@@ -87,7 +90,7 @@ def covariances(state: Array, information: Array) -> Array:
     for run in range(runs):
         place(state[run], turn, arms)
         rate, spread = vector(state[run, 6:]), result[run]
-        spread[:] = information[run]
+        copy_rows(information[run], spread)
         factor(spread)
         factor_inverse(spread, work)
         to_plain(rate, turn, arms, work)
@@ -115,11 +118,14 @@ def _add_frame(
     joint, force, shared = sums
     shown, by = np.empty(len(rows)), np.zeros((len(rows), 6))
     square, push, mixed = np.empty((6, 6)), np.empty(6), np.empty((6, 6))
-    joint[:], force[:], cost, each = 0.0, 0.0, 0.0, len(rows)
+    fill_rows(0.0, joint)
+    fill(0.0, force)
+    cost, each = 0.0, len(rows)
     rate, points = vector(at[6:]), len(arms) - 1
     for i in range(points):
         rows_of_point(at, vector(arms[i]), (axes, baseline), rows, shown, by)
-        square[:], push[:] = 0.0, 0.0
+        fill_rows(0.0, square)
+        fill(0.0, push)
         for r in range(each):
             m = each * i + r
             left = weight[m] * (measured[m] - shown[r] / noise[m])
@@ -256,11 +262,13 @@ def _judge(
             if not off * off <= GATE**2 * (1.0 + square / noise[m] ** 2):
                 weight[m] = 0.0
     if len(noise) > each * points:
-        told, of = np.empty((3, 8)), np.empty(3)
+        told, of, own = np.empty((3, 8)), np.empty(3), np.empty((8, 8))
+        for a in range(8):
+            copy(spread[6 + a, 6:14], own[a])
         acceleration_rows(at, turn, spin, of, told)
         for i in range(3):
             m = each * points + i
-            off, square = measured[m] - of[i] / noise[m], quadratic(told[i], spread[6:14, 6:14])
+            off, square = measured[m] - of[i] / noise[m], quadratic(told[i], own)
             if not off * off <= GATE**2 * (1.0 + square / noise[m] ** 2):
                 weight[m] = 0.0
 
@@ -305,15 +313,6 @@ def quadratic(row: Array, matrix: Array) -> float:
     for a in range(len(row)):
         for b in range(len(row)):
             total += row[a] * matrix[a, b] * row[b]
-    return total
-
-
-@compiled
-def dot(u: Array, v: Array) -> float:
-    """Return ``u^T v``."""
-    total = 0.0
-    for a in range(len(u)):
-        total += u[a] * v[a]
     return total
 
 

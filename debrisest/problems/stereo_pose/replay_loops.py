@@ -6,6 +6,7 @@ at an epoch is summed up before it is told of that at the start, `LANES` epochs 
 
 import numpy as np
 
+from debrisest.array_loops import fill
 from debrisest.arrays import Array, IntArray
 from debrisest.compiled import compiled
 from debrisest.problems.stereo_pose.lane_loops import (
@@ -53,14 +54,16 @@ def point_sums(
     sums, pulls, costs = np.empty(14 * n_e * LANES), np.empty(n_e * LANES), np.empty(LANES)
     owns = np.empty(9 * points * LANES)
     for run in range(runs):
-        sums[:], pulls[:], costs[:], owns[:] = 0.0, 0.0, 0.0, 0.0
+        for part in (sums, pulls, costs, owns):
+            fill(0.0, part)
         seen = measured[run], weight[run]
         for first in range(0, epochs, LANES):
             count = min(LANES, epochs - first)
             width = 8 * ((count + 7) // 8)
             _gather(states[run], camera[0], first, count, width, body)
             _gather_ways(turning[run], centre, camera[0], first, count, width, way)
-            joint[:], force[:] = 0.0, 0.0
+            fill(0.0, joint)
+            fill(0.0, force)
             for i in range(points):
                 place = states[run, first, 15 + 3 * i : 18 + 3 * i]
                 arm, at, shown = view
@@ -75,7 +78,7 @@ def point_sums(
                 into = sums[14 * lane :], pulls[lane:], owns[9 * LANES * i :]
                 _add_point(way, by_arm, own, width, *into)
             _add_motion(way, joint, force, width, sums, pulls)
-        cost[run] = np.sum(costs)
+        cost[run] = _over(costs, 0)
         _gathered(sums, pulls, owns, information[run], gradient[run])
     return information, gradient, cost
 
@@ -192,7 +195,7 @@ def _add_motion(
     add_six(turns, force[6 * LANES :], width, pulls[6 * LANES :])
     add_two(turns[36 * LANES :], force[6 * LANES :], width, pulls[12 * LANES :])
     for a in range(14):
-        moved[:] = 0.0
+        fill(0.0, moved)
         own = way[6 * a * LANES :]
         if a < 6:
             add_six(joint, own, width, moved)
