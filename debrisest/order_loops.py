@@ -20,12 +20,15 @@ def quantile(values: Array, share: float) -> float:
     least = _ranked(values, low)
     if low + 1 == count or rank == low:
         return least
-    return least * (1.0 - (rank - low)) + _ranked(values, low + 1) * (rank - low)
+    next_one = float(values[low + 1])
+    for k in range(low + 2, count):
+        next_one = min(next_one, float(values[k]))
+    return least * (1.0 - (rank - low)) + next_one * (rank - low)
 
 
 @compiled
 def _ranked(values: Array, rank: int) -> float:
-    """Return the value of a rank, with lower ones before it, by Hoare's selection."""
+    """Return the value of a rank, with lower ones before it and higher behind (Hoare)."""
     first, last = 0, len(values) - 1
     while first < last:
         middle, i, j = values[(first + last) // 2], first, last
