@@ -6,6 +6,11 @@ Kernels are called as an estimator calls them: what is left around the loops cou
 holds whole filters against their peers.
 """
 
+import os
+
+for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[_variable] = "1"
+
 import sys
 import time
 from collections.abc import Callable
@@ -293,7 +298,7 @@ def of_replay() -> dict[str, Kernel]:
         "stereo pose, linearised cost of 100 runs, 101 epochs": lambda: (
             linearize(model(), arc, guess, epochs - 1).information
         ),
-        "a frame of the filter: prediction, update and covariance, 100 runs": frame,
+        "stereo pose, a frame of the filter, 100 runs": frame,
         "replay, 100 runs of 101 epochs": lambda: replay(model(), *data).state,
         "the same, one run": lambda: replay(model(), *(each[:1] for each in data)).state,
     }
