@@ -46,12 +46,6 @@ class Fit(NamedTuple):
         return self.offset < self.offset_limit
 
     @property
-    def noise_as_said(self) -> bool:
-        """Whether the residuals are as large as the given noise has them."""
-        spread = _SIGMAS * np.sqrt(2.0 / self.dof)
-        return bool(1.0 / _NOISE_AS_SAID - spread < self.excess < _NOISE_AS_SAID + spread)
-
-    @property
     def noise_below(self) -> bool:
         """Whether the residuals are at most as large as the given noise has them."""
         return bool(self.excess < _NOISE_AS_SAID + _SIGMAS * np.sqrt(2.0 / self.dof))
